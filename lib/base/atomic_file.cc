@@ -1,0 +1,51 @@
+#include "splitfusion/lib/base/atomic_file.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+
+void WritePathAtomically(const std::string& path,
+                         const std::function<void(const std::string&)>& write) {
+  namespace fs = std::filesystem;
+  const fs::path target(path);
+  std::error_code error;
+  if (target.has_parent_path()) {
+    fs::create_directories(target.parent_path(), error);
+  }
+  const fs::path temporary =
+      target.parent_path() / ("." + target.stem().string() + ".tmp" +
+                              std::to_string(getpid()) +
+                              target.extension().string());
+  try {
+    write(temporary.string());
+  } catch (...) {
+    fs::remove(temporary, error);
+    throw;
+  }
+  fs::rename(temporary, target, error);
+  if (error) {
+    const std::string reason = error.message();
+    fs::remove(temporary, error);
+    throw InputError(path + ": cannot be written (" + reason + ")");
+  }
+}
+
+void WriteFileAtomically(const std::string& path,
+                         const std::function<void(std::ostream&)>& write) {
+  WritePathAtomically(path, [&](const std::string& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    if (stream) write(stream);
+    stream.close();
+    if (!stream) {
+      throw InputError(path + ": cannot be written (folder missing, not "
+                       "writable or disk full)");
+    }
+  });
+}
+
+}  // namespace splitfusion

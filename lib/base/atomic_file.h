@@ -1,0 +1,25 @@
+#ifndef SPLITFUSION_LIB_BASE_ATOMIC_FILE_H_
+#define SPLITFUSION_LIB_BASE_ATOMIC_FILE_H_
+
+#include <functional>
+#include <ostream>
+#include <string>
+
+namespace splitfusion {
+
+/// Writes a file through a temporary name in the same folder and renames it,
+/// so that a reader never sees half of it and a failure leaves the old one.
+/// Missing parent folders are created.
+///
+/// @throw InputError if the file cannot be written; names the path.
+void WriteFileAtomically(const std::string& path,
+                         const std::function<void(std::ostream&)>& write);
+
+/// The same for writers that want a path (images, grids): `write` receives the
+/// temporary path, which keeps the extension of `path`.
+void WritePathAtomically(const std::string& path,
+                         const std::function<void(const std::string&)>& write);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_BASE_ATOMIC_FILE_H_

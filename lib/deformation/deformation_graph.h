@@ -1,0 +1,54 @@
+#ifndef SPLITFUSION_LIB_DEFORMATION_DEFORMATION_GRAPH_H_
+#define SPLITFUSION_LIB_DEFORMATION_DEFORMATION_GRAPH_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "splitfusion/lib/geometry/rigid3.h"
+
+namespace splitfusion {
+
+/// Motion of one graph node (SplitFusion Eq. 1): p~ = R (p - g) + t + g maps a
+/// canonical point p into the camera frame; metres.
+struct NodeMotion {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();     ///< R_i
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();      ///< t_i
+};
+
+/// The embedded deformation graph of one surface (SplitFusion IV-B).
+///
+/// A rigid surface is the graph with one node at the canonical origin: its
+/// motion is the rigid motion itself, its weight is 1 everywhere.
+struct DeformationGraph {
+  std::vector<Eigen::Vector3d> positions;  ///< g_i, canonical frame, metres.
+  std::vector<NodeMotion> motions;         ///< Camera from canonical, per node.
+  /// Edges: for every node the neighbours it is tied to, ascending. Directed;
+  /// Eq. 6 sums over exactly these. Built along the surface, not across gaps.
+  std::vector<std::vector<int>> neighbors;
+  double node_spacing = 0;  ///< Metres; 0 for a rigid surface.
+
+  int size() const { return static_cast<int>(positions.size()); }
+  bool rigid() const { return positions.size() == 1; }
+};
+
+/// The one-node graph of a rigid surface.
+DeformationGraph MakeRigidGraph(const Rigid3d& camera_from_canonical);
+
+/// Eq. 1: the point p (canonical) carried by node i alone; camera frame.
+inline Eigen::Vector3d ApplyNode(const Eigen::Vector3d& g,
+                                 const NodeMotion& motion,
+                                 const Eigen::Vector3d& p) {
+  return motion.rotation * (p - g) + motion.translation + g;
+}
+
+/// Moves the whole surface by one rigid motion of the camera frame (Q, s):
+/// R_i <- Q R_i, t_i <- Q (g_i + t_i) + s - g_i.
+void ApplyRigidMotion(const Rigid3d& motion, DeformationGraph* graph);
+
+/// The single rigid motion that is closest to the nodes' motions (least squares
+/// over the node positions); camera from canonical.
+Rigid3d MeanRigidMotion(const DeformationGraph& graph);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_DEFORMATION_DEFORMATION_GRAPH_H_

@@ -1,0 +1,41 @@
+#ifndef SPLITFUSION_LIB_GEOMETRY_CAMERA_H_
+#define SPLITFUSION_LIB_GEOMETRY_CAMERA_H_
+
+#include <Eigen/Core>
+
+namespace splitfusion {
+
+/// Pinhole camera without distortion. Camera frame: x right, y down, z forward;
+/// pixel (0, 0) is the centre of the top-left pixel.
+struct PinholeCamera {
+  int width = 0;   ///< Pixels.
+  int height = 0;  ///< Pixels.
+  double fx = 0;   ///< Focal length, pixels.
+  double fy = 0;   ///< Focal length, pixels.
+  double cx = 0;   ///< Principal point, pixels.
+  double cy = 0;   ///< Principal point, pixels.
+
+  /// Pixel of a point of the camera frame (metres); the point must have z > 0.
+  template <typename T>
+  Eigen::Matrix<T, 2, 1> Project(const Eigen::Matrix<T, 3, 1>& point) const {
+    return {T(fx) * point.x() / point.z() + T(cx),
+            T(fy) * point.y() / point.z() + T(cy)};
+  }
+
+  /// Point of the camera frame at pixel (u, v) and z-depth `depth` (metres).
+  template <typename T>
+  Eigen::Matrix<T, 3, 1> BackProject(T u, T v, T depth) const {
+    return {(u - T(cx)) / T(fx) * depth, (v - T(cy)) / T(fy) * depth, depth};
+  }
+
+  /// Camera of the image that keeps every `stride`-th pixel of every
+  /// `stride`-th row, beginning with pixel (0, 0).
+  PinholeCamera Subsampled(int stride) const;
+
+  /// @throw InputError if a size or focal length is not positive.
+  void Check() const;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_GEOMETRY_CAMERA_H_

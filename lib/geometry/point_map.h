@@ -1,0 +1,48 @@
+#ifndef SPLITFUSION_LIB_GEOMETRY_POINT_MAP_H_
+#define SPLITFUSION_LIB_GEOMETRY_POINT_MAP_H_
+
+#include <opencv2/core.hpp>
+
+#include "splitfusion/lib/geometry/camera.h"
+
+namespace splitfusion {
+
+/// Organised points of one depth image, camera frame, metres.
+struct PointMap {
+  cv::Mat_<cv::Vec3f> points;   ///< HxW; (0,0,0) where there is no depth.
+  cv::Mat_<cv::Vec3f> normals;  ///< HxW; towards the camera; 0 = unknown.
+};
+
+/// How points and normals are computed from depth.
+struct PointMapOptions {
+  /// Half width of the window over which a plane is fitted, pixels. Kinect
+  /// noise is correlated over about 1 pixel, so a wide window pays.
+  int normal_radius = 3;
+  /// Neighbours whose depth differs from the centre by more than
+  /// `edge_factor` x sigma(z) + `edge_offset` (metres) do not count.
+  double edge_factor = 4.0;
+  double edge_offset = 0.004;
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// Axial noise of a structured-light camera at z-depth `depth` (both metres):
+/// sigma = 0.0012 + 0.0019 (z - 0.4)^2 (Nguyen et al. 2012). It sets weights
+/// and edge thresholds; its shape matters, its scale does not.
+template <typename T>
+T DepthSigma(T depth) {
+  const T d = depth - T(0.4);
+  return T(0.0012) + T(0.0019) * d * d;
+}
+
+/// Lifts an HxW 32FC1 depth image (metres, 0 = none) to points, and fits a
+/// plane around every pixel for its normal.
+///
+/// @throw InputError if the image's type or size does not fit the camera.
+PointMap ComputePointMap(const cv::Mat& depth, const PinholeCamera& camera,
+                         const PointMapOptions& options = {});
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_GEOMETRY_POINT_MAP_H_

@@ -1,0 +1,44 @@
+#ifndef SPLITFUSION_LIB_GEOMETRY_TRIANGLE_MESH_H_
+#define SPLITFUSION_LIB_GEOMETRY_TRIANGLE_MESH_H_
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace splitfusion {
+
+/// Indexed triangle mesh; triangles are counter-clockwise seen from outside.
+/// `normals` and `colors` are empty or have one entry a vertex.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3f> vertices;            ///< Metres.
+  std::vector<Eigen::Vector3f> normals;             ///< Unit length, outward.
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< Red, green, blue.
+  std::vector<Eigen::Vector3i> triangles;           ///< Vertex indices.
+
+  bool empty() const { return vertices.empty(); }
+};
+
+/// Area-weighted vertex normals from the triangles; zero where no triangle is.
+std::vector<Eigen::Vector3f> ComputeVertexNormals(const TriangleMesh& mesh);
+
+/// Writes a binary little-endian PLY through a temporary name.
+///
+/// @throw InputError if the file cannot be written.
+void WritePly(const std::string& path, const TriangleMesh& mesh);
+
+/// Extra per-vertex scalar properties of a PLY file, by name ("seen", ...).
+using PlyProperties = std::map<std::string, std::vector<double>>;
+
+/// Reads an ascii or binary little-endian PLY; polygons become triangle fans.
+/// `extra`, if given, receives every other scalar property of the vertices.
+///
+/// @throw InputError on a missing, truncated or big-endian file, or on vertex
+///     indices out of range; names the file and what is wrong.
+TriangleMesh ReadPly(const std::string& path, PlyProperties* extra = nullptr);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_GEOMETRY_TRIANGLE_MESH_H_

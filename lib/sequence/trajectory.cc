@@ -1,0 +1,56 @@
+#include "splitfusion/lib/sequence/trajectory.h"
+
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+
+Trajectory ReadTumTrajectory(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  Trajectory trajectory;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    std::istringstream words(line);
+    std::string first;
+    if (!(words >> first) || first[0] == '#') continue;
+    words.str(line);
+    words.clear();
+    TimedPose pose;
+    Eigen::Vector3d t;
+    Eigen::Quaterniond q;
+    if (!(words >> pose.timestamp >> t.x() >> t.y() >> t.z() >> q.x() >>
+          q.y() >> q.z() >> q.w()) ||
+        !t.allFinite() || !(q.norm() > 1e-6)) {
+      throw InputError(path + ":" + std::to_string(number) +
+                       ": expected 'timestamp tx ty tz qx qy qz qw', found '" +
+                       line + "'");
+    }
+    pose.world_from_camera.linear() = q.normalized().toRotationMatrix();
+    pose.world_from_camera.translation() = t;
+    trajectory.push_back(pose);
+  }
+  return trajectory;
+}
+
+void WriteTumTrajectory(const std::string& path, const Trajectory& trajectory) {
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << "# timestamp tx ty tz qx qy qz qw   (world from camera, metres)\n";
+    for (const TimedPose& pose : trajectory) {
+      const Eigen::Vector3d t = pose.world_from_camera.translation();
+      const Eigen::Quaterniond q(pose.world_from_camera.linear());
+      out << std::fixed << std::setprecision(6) << pose.timestamp
+          << std::defaultfloat << std::setprecision(9);
+      for (const double v : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+        out << ' ' << v;
+      }
+      out << '\n';
+    }
+  });
+}
+
+}  // namespace splitfusion

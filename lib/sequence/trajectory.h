@@ -1,0 +1,34 @@
+#ifndef SPLITFUSION_LIB_SEQUENCE_TRAJECTORY_H_
+#define SPLITFUSION_LIB_SEQUENCE_TRAJECTORY_H_
+
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/geometry/rigid3.h"
+
+namespace splitfusion {
+
+/// One pose of a trajectory.
+struct TimedPose {
+  double timestamp = 0;  ///< Seconds.
+  Rigid3d world_from_camera = Rigid3d::Identity();
+};
+
+/// Poses in order of time stamps.
+using Trajectory = std::vector<TimedPose>;
+
+/// Reads TUM text: `timestamp tx ty tz qx qy qz qw`, `#` comments; the poses
+/// are camera-to-world, metres.
+///
+/// @throw InputError on a missing file or a line that does not parse; names
+///     file and line.
+Trajectory ReadTumTrajectory(const std::string& path);
+
+/// Writes TUM text (6 decimals of time, 9 significant digits of the pose).
+///
+/// @throw InputError if the file cannot be written.
+void WriteTumTrajectory(const std::string& path, const Trajectory& trajectory);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SEQUENCE_TRAJECTORY_H_
