@@ -4,10 +4,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/geometry/kd_tree.h"
 
 namespace splitfusion {
 
@@ -17,9 +17,9 @@ constexpr int kMaxSkinningNodes = 8;
 /// The nodes that carry one point, ascending by index, and their weights of
 /// Eq. 3, which sum to 1.
 struct Skinning {
-  std::array<std::int32_t, kMaxSkinningNodes> nodes{};
-  std::array<float, kMaxSkinningNodes> weights{};
-  int count = 0;
+  std::array<std::int32_t, kMaxSkinningNodes> nodes{};  ///< Node indices.
+  std::array<float, kMaxSkinningNodes> weights{};       ///< w_ij, sum 1.
+  int count = 0;                                        ///< Nodes used.
 };
 
 /// Finds the skinning of points (SplitFusion Eq. 3): the K nearest nodes,
@@ -34,34 +34,34 @@ struct Skinning {
 /// A snapshot of the positions and edges of a graph; rebuild after growth.
 class SkinningIndex {
  public:
-  /// `neighbors_per_point` is K, 1..kMaxSkinningNodes.
+  /// `neighbors_per_point` is K, 1..kMaxSkinningNodes; the graph has a node.
   SkinningIndex(const DeformationGraph& graph, int neighbors_per_point);
 
   /// Skinning of a canonical point (metres). Thread-safe.
   Skinning Skin(const Eigen::Vector3f& point) const;
 
-  /// Nearest node of a canonical point and its distance (metres).
-  int NearestNode(const Eigen::Vector3f& point, float* distance) const;
+  /// Skinning of many canonical points, in parallel.
+  std::vector<Skinning> Skin(const std::vector<Eigen::Vector3f>& points) const;
+
+  /// Nearest node of a canonical point; `distance` (metres) may be null.
+  int NearestNode(const Eigen::Vector3f& point, float* distance) const {
+    return tree_.Nearest(point, distance);
+  }
 
  private:
-  struct CellHash {
-    std::size_t operator()(const Eigen::Vector3i& cell) const;
-  };
-  Eigen::Vector3i CellOf(const Eigen::Vector3f& point) const;
-
   int k_;
-  float cell_size_;
   std::vector<Eigen::Vector3f> positions_;
-  std::vector<std::vector<int>> candidates_;  // Per nearest node.
-  std::unordered_map<Eigen::Vector3i, std::vector<int>, CellHash> cells_;
+  KdTree tree_;
+  std::vector<std::vector<int>> candidates_;  // By nearest node.
 };
 
 /// Node motions as affine maps p~ = A p + b in float, for warping many points.
 class WarpField {
  public:
+  /// Takes a snapshot of the graph's motions.
   explicit WarpField(const DeformationGraph& graph);
 
-  /// Eq. 2: canonical point -> camera frame.
+  /// Eq. 2: canonical point -> camera frame, metres.
   Eigen::Vector3f WarpPoint(const Skinning& skinning,
                             const Eigen::Vector3f& point) const {
     Eigen::Vector3f warped = Eigen::Vector3f::Zero();
@@ -82,6 +82,11 @@ class WarpField {
     }
     return warped.normalized();
   }
+
+  /// The blended motion of a point as a node would have it if it stood there
+  /// (`point` canonical): its Eq. 1 agrees with Eq. 2 at the point.
+  NodeMotion BlendMotion(const Skinning& skinning,
+                         const Eigen::Vector3f& point) const;
 
  private:
   struct Affine {

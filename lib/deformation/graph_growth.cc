@@ -1,0 +1,141 @@
+#include "splitfusion/lib/deformation/graph_growth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/deformation/surface_edges.h"
+
+namespace splitfusion {
+namespace {
+
+/// Positions in cubes of one spacing, to ask whether a point is covered.
+class CoverGrid {
+ public:
+  explicit CoverGrid(double spacing) : spacing_(spacing) {}
+
+  void Insert(const Eigen::Vector3d& p) { cells_[Cell(p)].push_back(p); }
+
+  bool Covers(const Eigen::Vector3d& p) const {
+    const auto [x, y, z] = Cell(p);
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dz = -1; dz <= 1; ++dz) {
+          const auto cell = cells_.find({x + dx, y + dy, z + dz});
+          if (cell == cells_.end()) continue;
+          for (const Eigen::Vector3d& q : cell->second) {
+            if ((p - q).squaredNorm() < spacing_ * spacing_) return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  using Key = std::tuple<int, int, int>;
+  Key Cell(const Eigen::Vector3d& p) const {
+    return {static_cast<int>(std::floor(p.x() / spacing_)),
+            static_cast<int>(std::floor(p.y() / spacing_)),
+            static_cast<int>(std::floor(p.z() / spacing_))};
+  }
+  double spacing_;
+  std::map<Key, std::vector<Eigen::Vector3d>> cells_;
+};
+
+/// Vertices that keep `spacing` from the nodes and from one another, greedily
+/// in vertex order. Specks of the mesh (vertices without a triangle) get none.
+std::vector<Eigen::Vector3d> UncoveredPositions(const TriangleMesh& mesh,
+                                                const DeformationGraph& graph,
+                                                double spacing) {
+  CoverGrid cover(spacing);
+  for (const Eigen::Vector3d& g : graph.positions) cover.Insert(g);
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) used[t[k]] = true;
+  }
+  std::vector<Eigen::Vector3d> added;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Eigen::Vector3d p = mesh.vertices[i].cast<double>();
+    if (!used[i] || cover.Covers(p)) continue;
+    cover.Insert(p);
+    added.push_back(p);
+  }
+  return added;
+}
+
+void BlendNewMotions(const SkinningIndex& index, const DeformationGraph& old,
+                     const std::vector<NodeMotion>& old_motions,
+                     const std::vector<Eigen::Vector3d>& added,
+                     std::vector<NodeMotion>* motions) {
+  DeformationGraph graph = old;
+  graph.motions = old_motions;
+  const WarpField warp(graph);
+  for (const Eigen::Vector3d& g : added) {
+    const Eigen::Vector3f point = g.cast<float>();
+    motions->push_back(warp.BlendMotion(index.Skin(point), point));
+  }
+}
+
+}  // namespace
+
+void GraphOptions::Check() const {
+  CheckOption(neighbors_per_point >= 1 &&
+                  neighbors_per_point <= kMaxSkinningNodes,
+              "neighbors_per_point", neighbors_per_point,
+              "1.." + std::to_string(kMaxSkinningNodes));
+  CheckOption(neighbors_per_node >= 1 && neighbors_per_node <= 64,
+              "neighbors_per_node", neighbors_per_node, "1..64");
+  CheckOption(near_spacing >= 0.002, "near_spacing", near_spacing,
+              "metres >= 0.002");
+  CheckOption(far_spacing >= near_spacing, "far_spacing", far_spacing,
+              "metres >= near_spacing");
+  CheckOption(near_depth > 0, "near_depth", near_depth, "metres > 0");
+  CheckOption(far_depth > near_depth, "far_depth", far_depth,
+              "metres > near_depth");
+  CheckOption(max_nodes >= 1, "max_nodes", max_nodes, ">= 1");
+}
+
+double NodeSpacing(const GraphOptions& options, double depth) {
+  const double t = std::clamp((depth - options.near_depth) /
+                                  (options.far_depth - options.near_depth),
+                              0.0, 1.0);
+  return options.near_spacing +
+         t * (options.far_spacing - options.near_spacing);
+}
+
+int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
+              DeformationGraph* graph, MotionHistory* history) {
+  std::vector<Eigen::Vector3d> added =
+      UncoveredPositions(canonical_mesh, *graph, graph->node_spacing);
+  const int room = options.max_nodes - graph->size();
+  while (static_cast<int>(added.size()) > room) {
+    graph->node_spacing *= 1.1;
+    added = UncoveredPositions(canonical_mesh, *graph, graph->node_spacing);
+    if (graph->size() > 0 && room <= 0) added.clear();
+  }
+  if (added.empty()) return 0;
+  if (graph->size() == 0) {
+    graph->motions.resize(added.size());
+  } else {
+    const SkinningIndex index(*graph, options.neighbors_per_point);
+    std::vector<NodeMotion> motions = graph->motions;
+    BlendNewMotions(index, *graph, graph->motions, added, &motions);
+    if (history != nullptr) {
+      for (FrameMotions& frame : history->frames) {
+        const std::vector<NodeMotion> old = frame.motions;
+        BlendNewMotions(index, *graph, old, added, &frame.motions);
+      }
+    }
+    graph->motions = std::move(motions);
+  }
+  graph->positions.insert(graph->positions.end(), added.begin(), added.end());
+  graph->neighbors = ConnectAlongSurface(graph->positions, canonical_mesh,
+                                         options.neighbors_per_node);
+  return static_cast<int>(added.size());
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,43 @@
+#ifndef SPLITFUSION_LIB_DEFORMATION_GRAPH_GROWTH_H_
+#define SPLITFUSION_LIB_DEFORMATION_GRAPH_GROWTH_H_
+
+#include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/geometry/triangle_mesh.h"
+
+namespace splitfusion {
+
+/// How nodes are placed on a surface and tied together.
+struct GraphOptions {
+  int neighbors_per_point = 6;  ///< K of Eq. 3.
+  int neighbors_per_node = 8;   ///< Edges of a node.
+  /// Node spacing for surfaces near the camera and farther away, metres; in
+  /// between linear in the depth at birth.
+  double near_spacing = 0.025;
+  double far_spacing = 0.040;
+  double near_depth = 1.0;  ///< Metres; up to here `near_spacing`.
+  double far_depth = 2.0;   ///< Metres; from here `far_spacing`.
+  int max_nodes = 2000;     ///< Per surface; the spacing grows to keep it.
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// Node spacing for a surface at z-depth `depth`, both metres.
+double NodeSpacing(const GraphOptions& options, double depth);
+
+/// Adds nodes where the canonical mesh is farther than the node spacing from
+/// every node, so that nodes cover the surface evenly (SplitFusion IV-B), and
+/// ties all nodes along the surface. An empty graph is filled from scratch with
+/// identity motions; new nodes of a grown graph get the motion that the old
+/// ones blend to at their place, in the graph and in every frame of `history`
+/// (may be null). When `max_nodes` would be exceeded the spacing is raised and
+/// the graph's new nodes are as many as fit.
+///
+/// @return number of nodes added; edges are rebuilt only if it is not 0.
+int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
+              DeformationGraph* graph, MotionHistory* history);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_DEFORMATION_GRAPH_GROWTH_H_

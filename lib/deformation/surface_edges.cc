@@ -1,0 +1,201 @@
+#include "splitfusion/lib/deformation/surface_edges.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <queue>
+#include <set>
+#include <utility>
+
+#include "splitfusion/lib/geometry/kd_tree.h"
+
+namespace splitfusion {
+namespace {
+
+/// Vertex adjacency of a mesh in compressed rows.
+struct MeshGraph {
+  std::vector<int> begin;   // Per vertex, into `to`.
+  std::vector<int> to;
+};
+
+MeshGraph BuildMeshGraph(const TriangleMesh& mesh) {
+  MeshGraph graph;
+  graph.begin.assign(mesh.vertices.size() + 1, 0);
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) graph.begin[t[k] + 1] += 2;
+  }
+  std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
+  graph.to.resize(graph.begin.back());
+  std::vector<int> fill(graph.begin.begin(), graph.begin.end() - 1);
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      graph.to[fill[t[k]]++] = t[(k + 1) % 3];
+      graph.to[fill[t[k]]++] = t[(k + 2) % 3];
+    }
+  }
+  return graph;
+}
+
+/// For every vertex the nearest node along the mesh and the path length.
+struct Regions {
+  std::vector<int> node;
+  std::vector<float> distance;
+};
+
+Regions GrowRegions(const std::vector<Eigen::Vector3d>& nodes,
+                    const TriangleMesh& mesh, const MeshGraph& graph) {
+  Regions regions;
+  regions.node.assign(mesh.vertices.size(), -1);
+  regions.distance.assign(mesh.vertices.size(),
+                          std::numeric_limits<float>::max());
+  using Entry = std::pair<float, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  const KdTree vertex_tree(mesh.vertices);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    float distance = 0;
+    const int vertex =
+        vertex_tree.Nearest(nodes[i].cast<float>(), &distance);
+    if (distance >= regions.distance[vertex]) continue;
+    regions.distance[vertex] = distance;
+    regions.node[vertex] = static_cast<int>(i);
+    queue.emplace(distance, vertex);
+  }
+  while (!queue.empty()) {
+    const auto [distance, vertex] = queue.top();
+    queue.pop();
+    if (distance > regions.distance[vertex]) continue;
+    for (int e = graph.begin[vertex]; e < graph.begin[vertex + 1]; ++e) {
+      const int next = graph.to[e];
+      const float length =
+          distance + (mesh.vertices[next] - mesh.vertices[vertex]).norm();
+      if (length >= regions.distance[next]) continue;
+      regions.distance[next] = length;
+      regions.node[next] = regions.node[vertex];
+      queue.emplace(length, next);
+    }
+  }
+  return regions;
+}
+
+using Lengths = std::vector<std::map<int, float>>;  // Per node: other -> path.
+
+void Shorten(int from, int to, float length, Lengths* lengths) {
+  const auto [entry, inserted] = (*lengths)[from].emplace(to, length);
+  if (!inserted) entry->second = std::min(entry->second, length);
+}
+
+Lengths AdjacentRegions(const Regions& regions, const TriangleMesh& mesh,
+                        const MeshGraph& graph, std::size_t node_count) {
+  Lengths lengths(node_count);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const int a = regions.node[v];
+    for (int e = graph.begin[v]; a >= 0 && e < graph.begin[v + 1]; ++e) {
+      const int b = regions.node[graph.to[e]];
+      if (b < 0 || b == a) continue;
+      const float length =
+          regions.distance[v] + regions.distance[graph.to[e]] +
+          (mesh.vertices[graph.to[e]] - mesh.vertices[v]).norm();
+      Shorten(a, b, length, &lengths);
+      Shorten(b, a, length, &lengths);
+    }
+  }
+  return lengths;
+}
+
+/// Adds the neighbours of the neighbours.
+Lengths WithSecondRing(const Lengths& first) {
+  Lengths second = first;
+  for (std::size_t a = 0; a < first.size(); ++a) {
+    for (const auto& [b, length_ab] : first[a]) {
+      for (const auto& [c, length_bc] : first[b]) {
+        if (c != static_cast<int>(a)) {
+          Shorten(static_cast<int>(a), c, length_ab + length_bc, &second);
+        }
+      }
+    }
+  }
+  return second;
+}
+
+/// Ties nodes with fewer than `minimum` neighbours to the nearest in space.
+void TieLooseNodes(const std::vector<Eigen::Vector3d>& nodes, int minimum,
+                   std::vector<std::set<int>>* edges) {
+  std::vector<Eigen::Vector3f> positions;
+  for (const Eigen::Vector3d& g : nodes) positions.push_back(g.cast<float>());
+  const KdTree tree(positions);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (static_cast<int>((*edges)[i].size()) >= minimum) continue;
+    for (const int j : tree.Nearest(positions[i], minimum + 1)) {
+      if (j == static_cast<int>(i)) continue;
+      (*edges)[i].insert(j);
+      (*edges)[j].insert(static_cast<int>(i));
+    }
+  }
+}
+
+/// Ties every connected part of the graph to its nearest other part.
+void TieParts(const std::vector<Eigen::Vector3d>& nodes,
+              std::vector<std::set<int>>* edges) {
+  const int count = static_cast<int>(nodes.size());
+  std::vector<int> part(count, -1);
+  std::vector<std::vector<int>> parts;
+  for (int i = 0; i < count; ++i) {
+    if (part[i] >= 0) continue;
+    const int id = static_cast<int>(parts.size());
+    std::vector<int> members = {i};
+    part[i] = id;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      for (const int j : (*edges)[members[k]]) {
+        if (part[j] < 0) part[j] = id, members.push_back(j);
+      }
+    }
+    parts.push_back(std::move(members));
+  }
+  for (const std::vector<int>& members : parts) {
+    if (parts.size() == 1 || members.size() * 2 > nodes.size()) continue;
+    double best = std::numeric_limits<double>::max();
+    int from = -1, to = -1;
+    for (const int i : members) {
+      for (int j = 0; j < count; ++j) {
+        const double distance = (nodes[i] - nodes[j]).squaredNorm();
+        if (part[j] == part[i] || distance >= best) continue;
+        best = distance, from = i, to = j;
+      }
+    }
+    (*edges)[from].insert(to);
+    (*edges)[to].insert(from);
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> ConnectAlongSurface(
+    const std::vector<Eigen::Vector3d>& nodes, const TriangleMesh& mesh,
+    int count) {
+  const MeshGraph graph = BuildMeshGraph(mesh);
+  const Lengths lengths = WithSecondRing(AdjacentRegions(
+      GrowRegions(nodes, mesh, graph), mesh, graph, nodes.size()));
+  std::vector<std::set<int>> edges(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    std::vector<std::pair<float, int>> order;
+    for (const auto& [j, length] : lengths[i]) order.emplace_back(length, j);
+    std::sort(order.begin(), order.end());
+    const std::size_t kept = std::min<std::size_t>(count, order.size());
+    for (std::size_t k = 0; k < kept; ++k) {
+      edges[i].insert(order[k].second);
+      edges[order[k].second].insert(static_cast<int>(i));
+    }
+  }
+  constexpr int kMinimumNeighbors = 3;
+  TieLooseNodes(nodes, kMinimumNeighbors, &edges);
+  TieParts(nodes, &edges);
+  std::vector<std::vector<int>> neighbors;
+  neighbors.reserve(edges.size());
+  for (const std::set<int>& row : edges) {
+    neighbors.emplace_back(row.begin(), row.end());
+  }
+  return neighbors;
+}
+
+}  // namespace splitfusion

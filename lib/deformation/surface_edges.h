@@ -1,0 +1,27 @@
+#ifndef SPLITFUSION_LIB_DEFORMATION_SURFACE_EDGES_H_
+#define SPLITFUSION_LIB_DEFORMATION_SURFACE_EDGES_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "splitfusion/lib/geometry/triangle_mesh.h"
+
+namespace splitfusion {
+
+/// Neighbours of every node along the surface of a mesh, ascending.
+///
+/// Every vertex is given to the node nearest to it along the mesh (one
+/// Dijkstra search from all nodes at once); nodes whose regions touch are
+/// neighbours, at the length of the shortest path through the border. From
+/// these and their neighbours the `count` nearest are kept, both directions of
+/// an edge. Nodes of a separate piece of the mesh are tied to the nearest nodes
+/// in space, so that the graph has no loose parts.
+///
+/// `nodes`: canonical positions, metres, each near a vertex of the mesh.
+std::vector<std::vector<int>> ConnectAlongSurface(
+    const std::vector<Eigen::Vector3d>& nodes, const TriangleMesh& mesh,
+    int count);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_DEFORMATION_SURFACE_EDGES_H_
