@@ -1,0 +1,16 @@
+#include "splitfusion/cost_functions/builtin_terms.h"
+
+#include "splitfusion/cost_functions/arap.h"
+#include "splitfusion/cost_functions/point_to_plane.h"
+
+namespace splitfusion {
+
+TermRegistry BuiltinTerms() {
+  TermRegistry registry;
+  registry.Register("point_to_plane",
+                    [] { return std::make_unique<PointToPlaneTerm>(); });
+  registry.Register("arap", [] { return std::make_unique<ArapTerm>(); });
+  return registry;
+}
+
+}  // namespace splitfusion

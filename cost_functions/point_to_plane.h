@@ -1,0 +1,60 @@
+#ifndef SPLITFUSION_COST_FUNCTIONS_POINT_TO_PLANE_H_
+#define SPLITFUSION_COST_FUNCTIONS_POINT_TO_PLANE_H_
+
+#include <Eigen/Core>
+#include <cmath>
+#include <memory>
+
+#include "splitfusion/lib/energy/energy_term.h"
+
+namespace splitfusion {
+
+/// Point-to-plane distance of one warped model point to its live point.
+///
+///   r = sqrt(c) n_m . (x - v_t)                              SplitFusion Eq. 5
+///
+/// x is the warped model point (Eq. 2, a blend over K nodes), v_t the live
+/// point, n_m the model normal rotated by the warp at the last association and
+/// held constant while differentiating, c the confidence of the depth. With
+/// x(twists) from WarpFunctor: dr/dtau_i = sqrt(c) w_i n_m and, at zero twist,
+/// dr/domega_i = sqrt(c) w_i (R_i (v - g_i)) x n_m.
+///
+/// Residual: 1, metres * sqrt(confidence). Zero for any motion within the
+/// tangent plane; unchanged if camera frame, point and plane move together.
+struct PointToPlane {
+  static constexpr int kResiduals = 1;
+  Eigen::Vector3d normal;  ///< n_m, camera frame, unit length.
+  Eigen::Vector3d target;  ///< v_t, camera frame, metres.
+  double sqrt_confidence = 1;
+
+  /// `x`: warped point, camera frame, metres.
+  template <typename T>
+  bool operator()(const T* x, T* residual) const {
+    residual[0] = T(sqrt_confidence) * (T(normal.x()) * (x[0] - T(target.x())) +
+                                        T(normal.y()) * (x[1] - T(target.y())) +
+                                        T(normal.z()) * (x[2] - T(target.z())));
+    return true;
+  }
+};
+
+/// E_data of Eq. 5 over all correspondences.
+class PointToPlaneTerm : public EnergyTerm {
+ public:
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    std::vector<const ModelSample*> samples;
+    std::vector<PointToPlane> functors;
+    samples.reserve(input.correspondences.size());
+    functors.reserve(input.correspondences.size());
+    for (const Correspondence& c : input.correspondences) {
+      samples.push_back(&c.model);
+      functors.push_back({c.warped_normal.cast<double>(),
+                          c.target.cast<double>(), std::sqrt(c.weight)});
+    }
+    sink->AddWarpedPoints(samples, functors);
+  }
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_COST_FUNCTIONS_POINT_TO_PLANE_H_

@@ -1,0 +1,32 @@
+#ifndef SPLITFUSION_LIB_ASSOCIATION_CORRESPONDENCE_H_
+#define SPLITFUSION_LIB_ASSOCIATION_CORRESPONDENCE_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "splitfusion/lib/deformation/skinning.h"
+
+namespace splitfusion {
+
+/// A visible point of the model, carried by the graph.
+struct ModelSample {
+  Eigen::Vector3f point;   ///< Canonical, metres.
+  Eigen::Vector3f normal;  ///< Canonical, unit length, outward.
+  float intensity = 0;     ///< Model colour as grey, 0..1; < 0 = unknown.
+  Skinning skinning;       ///< Nodes that carry it.
+};
+
+/// A model point and the live point it should come to lie on.
+struct Correspondence {
+  ModelSample model;
+  Eigen::Vector3f warped_normal;  ///< Model normal under the current warp.
+  Eigen::Vector3f target;         ///< Live point, camera frame, metres.
+  Eigen::Vector3f target_normal;  ///< Live normal, camera frame.
+  /// Confidence, (sigma_0 / sigma(z))^2 with the depth noise sigma; residuals
+  /// are multiplied by its root, so that near and far points agree in noise.
+  float weight = 1;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ASSOCIATION_CORRESPONDENCE_H_

@@ -1,0 +1,216 @@
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <memory>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/energy/solver.h"
+
+namespace splitfusion {
+namespace {
+
+std::string Upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  return text;
+}
+
+/// The Ceres problem of one minimisation; it owns twists and losses.
+class CeresProblem {
+ public:
+  CeresProblem(const SurfaceProblem& input, const DeformationGraph& graph)
+      : twists_(kTwistSize * graph.size(), 0.0), problem_(ProblemOptions()) {
+    const EnergyInput energy_input{graph, input.correspondences};
+    for (int i = 0; i < graph.size(); ++i) {
+      problem_.AddParameterBlock(&twists_[kTwistSize * i], kTwistSize);
+    }
+    for (const WeightedTerm& term : input.energy) {
+      const double factor = term.term->is_prior() ? input.prior_factor : 1.0;
+      ResidualSink sink(graph, term.options, factor);
+      term.term->AddResiduals(energy_input, &sink);
+      TermBlocks blocks;
+      blocks.cost.term = term.options.name;
+      blocks.cost.residual_vectors = sink.residual_vectors();
+      for (ResidualBlock& block : sink.blocks()) {
+        blocks.ids.push_back(Add(std::move(block)));
+      }
+      terms_.push_back(std::move(blocks));
+    }
+  }
+
+  /// Cost of every term at the current twists.
+  std::vector<double> TermCosts() {
+    std::vector<double> costs;
+    for (const TermBlocks& term : terms_) {
+      double cost = 0;
+      if (!term.ids.empty()) {
+        ceres::Problem::EvaluateOptions options;
+        options.residual_blocks = term.ids;
+        if (!problem_.Evaluate(options, &cost, nullptr, nullptr, nullptr)) {
+          cost = std::nan("");
+        }
+      }
+      costs.push_back(cost);
+    }
+    return costs;
+  }
+
+  std::vector<TermCost> Terms(const std::vector<double>& initial,
+                              const std::vector<double>& final_costs) const {
+    std::vector<TermCost> costs;
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+      costs.push_back(terms_[i].cost);
+      costs.back().initial = initial[i];
+      costs.back().final = final_costs[i];
+    }
+    return costs;
+  }
+
+  ceres::Problem* problem() { return &problem_; }
+  const std::vector<double>& twists() const { return twists_; }
+
+ private:
+  struct TermBlocks {
+    TermCost cost;
+    std::vector<ceres::ResidualBlockId> ids;
+  };
+
+  static ceres::Problem::Options ProblemOptions() {
+    ceres::Problem::Options options;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;
+    return options;
+  }
+
+  ceres::ResidualBlockId Add(ResidualBlock block) {
+    std::vector<double*> parameters;
+    for (const int node : block.nodes) {
+      parameters.push_back(&twists_[kTwistSize * node]);
+    }
+    ceres::LossFunction* loss = block.loss.get();
+    if (block.loss != nullptr &&
+        (losses_.empty() || losses_.back() != block.loss)) {
+      losses_.push_back(block.loss);
+    }
+    return problem_.AddResidualBlock(block.cost.release(), loss, parameters);
+  }
+
+  std::vector<double> twists_;
+  std::vector<std::shared_ptr<ceres::LossFunction>> losses_;
+  ceres::Problem problem_;
+  std::vector<TermBlocks> terms_;
+};
+
+ceres::Solver::Options CeresOptions(const SolverOptions& options,
+                                    const DeformationGraph& graph) {
+  ceres::Solver::Options ceres_options;
+  std::string linear_solver = options.linear_solver;
+  if (linear_solver == "auto") {
+    linear_solver =
+        graph.rigid() ? "dense_normal_cholesky" : "sparse_normal_cholesky";
+  }
+  ceres::StringToLinearSolverType(Upper(linear_solver),
+                                  &ceres_options.linear_solver_type);
+  ceres::StringToPreconditionerType(Upper(options.preconditioner),
+                                    &ceres_options.preconditioner_type);
+  ceres::StringToTrustRegionStrategyType(
+      Upper(options.trust_region), &ceres_options.trust_region_strategy_type);
+  ceres_options.num_threads = options.threads;
+  ceres_options.max_num_iterations = options.max_iterations;
+  ceres_options.max_linear_solver_iterations =
+      options.max_linear_solver_iterations;
+  ceres_options.eta = options.eta;
+  ceres_options.function_tolerance = options.function_tolerance;
+  ceres_options.gradient_tolerance = options.gradient_tolerance;
+  ceres_options.parameter_tolerance = options.parameter_tolerance;
+  ceres_options.initial_trust_region_radius = options.initial_radius;
+  ceres_options.logging_type = ceres::SILENT;
+  return ceres_options;
+}
+
+void FillReport(const ceres::Solver::Summary& summary, bool full_report,
+                SolverReport* report) {
+  report->usable =
+      summary.IsSolutionUsable() && std::isfinite(summary.final_cost);
+  report->termination =
+      ceres::TerminationTypeToString(summary.termination_type);
+  report->message = summary.message;
+  report->initial_cost = summary.initial_cost;
+  report->final_cost = summary.final_cost;
+  report->parameters = summary.num_effective_parameters;
+  report->residuals = summary.num_residuals;
+  report->jacobian_seconds = summary.jacobian_evaluation_time_in_seconds;
+  report->linear_solver_seconds = summary.linear_solver_time_in_seconds;
+  for (const ceres::IterationSummary& it : summary.iterations) {
+    report->iterations.push_back(
+        {it.iteration, it.step_is_successful, it.cost, it.cost_change,
+         it.gradient_max_norm, it.step_norm, it.trust_region_radius,
+         it.linear_solver_iterations, it.iteration_time_in_seconds});
+  }
+  if (full_report) report->full_report = summary.FullReport();
+}
+
+void ComposeTwists(const std::vector<double>& twists, DeformationGraph* graph) {
+  for (int i = 0; i < graph->size(); ++i) {
+    const Eigen::Map<const Eigen::Vector3d> omega(&twists[kTwistSize * i]);
+    const Eigen::Map<const Eigen::Vector3d> tau(&twists[kTwistSize * i + 3]);
+    NodeMotion& motion = graph->motions[i];
+    motion.rotation = Orthonormalized(ExpSo3(omega) * motion.rotation);
+    motion.translation += tau;
+  }
+}
+
+}  // namespace
+
+void SolverOptions::Check() const {
+  ceres::LinearSolverType solver;
+  CheckOption(linear_solver == "auto" ||
+                  (ceres::StringToLinearSolverType(Upper(linear_solver),
+                                                   &solver) &&
+                   linear_solver.find("schur") == std::string::npos),
+              "linear_solver", linear_solver,
+              "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
+              "or cgnr");
+  CheckOption(preconditioner == "jacobi" || preconditioner == "identity",
+              "preconditioner", preconditioner, "jacobi or identity");
+  CheckOption(
+      trust_region == "levenberg_marquardt" || trust_region == "dogleg",
+      "trust_region", trust_region, "levenberg_marquardt or dogleg");
+  CheckOption(trust_region != "dogleg" || linear_solver != "cgnr",
+              "trust_region", trust_region,
+              "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
+              "factorisation)");
+  CheckOption(threads >= 1, "solver_threads", threads, ">= 1");
+  CheckOption(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
+  CheckOption(max_linear_solver_iterations >= 1, "max_linear_solver_iterations",
+              max_linear_solver_iterations, ">= 1");
+  CheckOption(eta > 0 && eta < 1, "eta", eta, "between 0 and 1");
+  CheckOption(function_tolerance >= 0, "function_tolerance",
+              function_tolerance, ">= 0");
+  CheckOption(gradient_tolerance >= 0, "gradient_tolerance",
+              gradient_tolerance, ">= 0");
+  CheckOption(parameter_tolerance >= 0, "parameter_tolerance",
+              parameter_tolerance, ">= 0");
+  CheckOption(initial_radius > 0, "initial_radius", initial_radius, "> 0");
+}
+
+SolverReport MinimizeWithCeres(const SurfaceProblem& input,
+                               const SolverOptions& options,
+                               DeformationGraph* graph) {
+  const Stopwatch stopwatch;
+  SolverReport report;
+  CeresProblem problem(input, *graph);
+  const std::vector<double> initial = problem.TermCosts();
+  ceres::Solver::Summary summary;
+  ceres::Solve(CeresOptions(options, *graph), problem.problem(), &summary);
+  FillReport(summary, options.full_report, &report);
+  report.terms = problem.Terms(initial, problem.TermCosts());
+  if (report.usable) ComposeTwists(problem.twists(), graph);
+  report.total_seconds = stopwatch.Seconds();
+  return report;
+}
+
+}  // namespace splitfusion

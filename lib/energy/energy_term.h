@@ -1,0 +1,41 @@
+#ifndef SPLITFUSION_LIB_ENERGY_ENERGY_TERM_H_
+#define SPLITFUSION_LIB_ENERGY_ENERGY_TERM_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/association/correspondence.h"
+#include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/energy/residual_sink.h"
+
+namespace splitfusion {
+
+/// What a term may look at: one surface at one association.
+struct EnergyInput {
+  const DeformationGraph& graph;  ///< Motions are the linearisation point.
+  const std::vector<Correspondence>& correspondences;
+};
+
+/// One term of the energy (SplitFusion Eq. 4).
+///
+/// A term adds residual vectors in metres (or units that compare with 1 cm) to
+/// the sink and names graph nodes, never parameter memory. The sink scales
+/// them: E_term = weight * (1/N) * sum of rho(|r|^2 / s^2), s = 1 cm. A new
+/// term is one header with a functor and this class, and one line of
+/// registration; see examples/ and CONTRIBUTING.md.
+class EnergyTerm {
+ public:
+  virtual ~EnergyTerm() = default;
+
+  /// Adds the residuals of all its points, nodes or edges.
+  virtual void AddResiduals(const EnergyInput& input,
+                            ResidualSink* sink) const = 0;
+
+  /// Whether annealing multiplies the weight of this term (priors).
+  virtual bool is_prior() const { return false; }
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_ENERGY_TERM_H_

@@ -1,0 +1,26 @@
+#ifndef SPLITFUSION_LIB_ENERGY_ROBUST_LOSS_H_
+#define SPLITFUSION_LIB_ENERGY_ROBUST_LOSS_H_
+
+#include <ceres/loss_function.h>
+
+#include <memory>
+#include <string>
+
+namespace splitfusion {
+
+/// Robust losses by their names on the command line.
+enum class LossKind { kTrivial, kHuber, kTukey, kCauchy };
+
+/// @throw InputError on an unknown name; lists the known ones.
+LossKind ParseLoss(const std::string& name);
+
+/// Name as ParseLoss takes it.
+std::string ToString(LossKind kind);
+
+/// Ceres' loss of that kind with inlier width `scale`, in units of the residual
+/// it is applied to.
+std::unique_ptr<ceres::LossFunction> MakeLoss(LossKind kind, double scale);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_ROBUST_LOSS_H_

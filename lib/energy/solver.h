@@ -1,0 +1,54 @@
+#ifndef SPLITFUSION_LIB_ENERGY_SOLVER_H_
+#define SPLITFUSION_LIB_ENERGY_SOLVER_H_
+
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/association/correspondence.h"
+#include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/energy/solver_report.h"
+#include "splitfusion/lib/energy/term_registry.h"
+
+namespace splitfusion {
+
+/// Options of the minimiser; names and values are Ceres' own.
+struct SolverOptions {
+  /// "auto" (dense_normal_cholesky for a rigid surface, else
+  /// sparse_normal_cholesky), dense_qr, dense_normal_cholesky,
+  /// sparse_normal_cholesky, cgnr.
+  std::string linear_solver = "auto";
+  /// For cgnr: identity or jacobi.
+  std::string preconditioner = "jacobi";
+  /// levenberg_marquardt or dogleg.
+  std::string trust_region = "levenberg_marquardt";
+  int threads = 1;         ///< Of Ceres; more change the last digits.
+  int max_iterations = 2;  ///< Per association.
+  int max_linear_solver_iterations = 100;  ///< For cgnr.
+  double eta = 0.01;       ///< For cgnr: relative accuracy of a step.
+  double function_tolerance = 1e-5;
+  double gradient_tolerance = 1e-10;
+  double parameter_tolerance = 1e-8;
+  double initial_radius = 1e4;  ///< Of the trust region.
+  bool full_report = false;     ///< Keep Ceres' FullReport() text.
+
+  /// @throw InputError on an unknown name or a value out of range.
+  void Check() const;
+};
+
+/// The problem of one surface at one association.
+struct SurfaceProblem {
+  const Energy& energy;
+  const std::vector<Correspondence>& correspondences;
+  double prior_factor = 1;  ///< Annealing: multiplies the priors' weights.
+};
+
+/// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7) and
+/// composes them onto the motions: R_i <- exp(omega_i) R_i, t_i <- t_i + tau_i.
+/// The graph is unchanged unless the report says usable.
+SolverReport MinimizeWithCeres(const SurfaceProblem& problem,
+                               const SolverOptions& options,
+                               DeformationGraph* graph);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_SOLVER_H_

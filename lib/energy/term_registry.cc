@@ -1,0 +1,129 @@
+#include "splitfusion/lib/energy/term_registry.h"
+
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+std::string Joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : ", ") + word;
+  }
+  return text;
+}
+
+double ParseNumber(const std::string& key, const std::string& value) {
+  std::size_t used = 0;
+  double number = std::nan("");
+  try {
+    number = std::stod(value, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  CheckOption(used == value.size() && std::isfinite(number), key, value,
+              "a number");
+  return number;
+}
+
+void SetKey(const std::string& key, const std::string& value,
+            TermOptions* options) {
+  const std::string field = options->name + "." + key;
+  if (key == "weight") {
+    options->weight = ParseNumber(field, value);
+    CheckOption(options->weight >= 0, field, value, "a number >= 0");
+  } else if (key == "scale") {
+    options->scale = ParseNumber(field, value);
+    CheckOption(options->scale > 0, field, value, "metres > 0");
+  } else if (key == "loss") {
+    options->loss = ParseLoss(value);
+  } else {
+    throw InputError("--terms: key '" + key + "' of term '" + options->name +
+                     "': expected weight, loss or scale");
+  }
+}
+
+std::string Trimmed(const std::string& text) {
+  const auto begin = text.find_first_not_of(" \t\n");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(" \t\n") - begin + 1);
+}
+
+void ParseArguments(const std::string& arguments, TermOptions* options) {
+  std::size_t begin = 0;
+  while (begin < arguments.size()) {
+    const std::size_t end = std::min(arguments.find(',', begin),
+                                     arguments.size());
+    const std::string pair = Trimmed(arguments.substr(begin, end - begin));
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string::npos) {
+      throw InputError("--terms: '" + pair + "' in term '" + options->name +
+                       "': expected key=value");
+    }
+    SetKey(Trimmed(pair.substr(0, equals)), Trimmed(pair.substr(equals + 1)),
+           options);
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
+void TermRegistry::Register(const std::string& name, Factory factory) {
+  if (!factories_.emplace(name, std::move(factory)).second) {
+    throw InputError("energy term '" + name + "': already registered");
+  }
+}
+
+std::unique_ptr<EnergyTerm> TermRegistry::Create(
+    const std::string& name) const {
+  const auto found = factories_.find(name);
+  if (found == factories_.end()) {
+    throw InputError("--terms: term '" + name + "' is unknown: expected " +
+                     Joined(Names()));
+  }
+  return found->second();
+}
+
+std::vector<std::string> TermRegistry::Names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, factory] : factories_) names.push_back(name);
+  return names;
+}
+
+Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
+  Energy energy;
+  std::size_t at = 0;
+  while ((at = text.find_first_not_of(" \t\n", at)) != std::string::npos) {
+    std::size_t end = at;
+    while (end < text.size() &&
+           (std::isalnum(static_cast<unsigned char>(text[end])) ||
+            text[end] == '_')) {
+      ++end;
+    }
+    WeightedTerm term;
+    term.options.name = text.substr(at, end - at);
+    term.term = registry.Create(term.options.name);
+    if (end < text.size() && text[end] == '(') {
+      const std::size_t close = text.find(')', end);
+      if (close == std::string::npos) {
+        throw InputError("--terms: '(' of term '" + term.options.name +
+                         "' is not closed: expected ')'");
+      }
+      ParseArguments(text.substr(end + 1, close - end - 1), &term.options);
+      end = close + 1;
+    }
+    energy.push_back(std::move(term));
+    at = end;
+  }
+  if (energy.empty()) {
+    throw InputError("--terms is empty: expected one or more of " +
+                     Joined(registry.Names()));
+  }
+  return energy;
+}
+
+}  // namespace splitfusion

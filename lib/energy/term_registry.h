@@ -1,0 +1,50 @@
+#ifndef SPLITFUSION_LIB_ENERGY_TERM_REGISTRY_H_
+#define SPLITFUSION_LIB_ENERGY_TERM_REGISTRY_H_
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/energy/energy_term.h"
+
+namespace splitfusion {
+
+/// Terms by name. A plain value: make one, register terms, pass it on.
+class TermRegistry {
+ public:
+  using Factory = std::function<std::unique_ptr<EnergyTerm>()>;
+
+  /// @throw InputError if the name is taken.
+  void Register(const std::string& name, Factory factory);
+
+  /// @throw InputError on an unknown name; lists the known ones.
+  std::unique_ptr<EnergyTerm> Create(const std::string& name) const;
+
+  /// Registered names, sorted.
+  std::vector<std::string> Names() const;
+
+ private:
+  std::map<std::string, Factory> factories_;
+};
+
+/// A term with its options.
+struct WeightedTerm {
+  TermOptions options;
+  std::shared_ptr<const EnergyTerm> term;
+};
+
+/// The energy of Eq. 4: a sum of weighted terms.
+using Energy = std::vector<WeightedTerm>;
+
+/// Parses the energy from text like
+/// `point_to_plane(weight=1,loss=tukey,scale=0.01) arap(weight=5)`.
+///
+/// @throw InputError on an unknown term, key or loss, a value that is no
+///     number or out of range, or a syntax error; says what is known.
+Energy ParseEnergy(const std::string& text, const TermRegistry& registry);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_TERM_REGISTRY_H_

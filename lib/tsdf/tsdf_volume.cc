@@ -1,0 +1,123 @@
+#include "splitfusion/lib/tsdf/tsdf_volume.h"
+
+#include <mutex>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/tsdf/internal/grids.h"
+
+namespace splitfusion {
+namespace {
+
+template <typename Grid>
+typename Grid::Ptr MakeGrid(const std::string& name, double voxel_size,
+                            typename Grid::ValueType background) {
+  openvdb::initialize();
+  auto grid = Grid::create(background);
+  grid->setTransform(
+      openvdb::math::Transform::createLinearTransform(voxel_size));
+  grid->setName(name);
+  return grid;
+}
+
+template <typename Grid>
+typename Grid::Ptr ReadGrid(openvdb::io::File* file, const std::string& name,
+                            const std::string& path) {
+  if (!file->hasGrid(name)) {
+    throw InputError(path + ": no grid '" + name +
+                     "': expected distance, weight and color");
+  }
+  auto grid = openvdb::gridPtrCast<Grid>(file->readGrid(name));
+  if (!grid) throw InputError(path + ": grid '" + name + "' has a wrong type");
+  return grid;
+}
+
+}  // namespace
+
+void TsdfOptions::Check() const {
+  CheckOption(voxel_size > 0 && voxel_size < 1, "voxel_size", voxel_size,
+              "metres between 0 and 1");
+  CheckOption(truncation >= 2 * voxel_size, "truncation", truncation,
+              "at least 2 voxels (" + std::to_string(2 * voxel_size) + " m)");
+  CheckOption(max_weight >= 1, "max_weight", max_weight, ">= 1");
+}
+
+void TsdfVolume::Grids::Touch(const openvdb::Coord& origin) {
+  distance->tree().touchLeaf(origin);
+  weight->tree().touchLeaf(origin);
+  color->tree().touchLeaf(origin);
+}
+
+TsdfVolume::TsdfVolume(const TsdfOptions& options)
+    : options_(options), grids_(std::make_unique<Grids>()) {
+  options.Check();
+  grids_->distance = MakeGrid<openvdb::FloatGrid>(
+      "distance", options.voxel_size, static_cast<float>(options.truncation));
+  grids_->weight =
+      MakeGrid<openvdb::FloatGrid>("weight", options.voxel_size, 0.0f);
+  grids_->color = MakeGrid<openvdb::Vec3SGrid>("color", options.voxel_size,
+                                               openvdb::Vec3s(0, 0, 0));
+}
+
+TsdfVolume::~TsdfVolume() = default;
+TsdfVolume::TsdfVolume(TsdfVolume&&) noexcept = default;
+TsdfVolume& TsdfVolume::operator=(TsdfVolume&&) noexcept = default;
+
+std::size_t TsdfVolume::leaf_count() const {
+  return grids_->distance->tree().leafCount();
+}
+
+void TsdfVolume::Write(const std::string& path) const {
+  WritePathAtomically(path, [&](const std::string& temporary) {
+    try {
+      grids_->distance->insertMeta("truncation",
+                                   openvdb::DoubleMetadata(options_.truncation));
+      grids_->distance->insertMeta("max_weight",
+                                   openvdb::DoubleMetadata(options_.max_weight));
+      openvdb::io::File file(temporary);
+      file.write({grids_->distance, grids_->weight, grids_->color});
+      file.close();
+    } catch (const openvdb::Exception& e) {
+      throw InputError(path + ": cannot be written (" + e.what() + ")");
+    }
+  });
+}
+
+TsdfVolume TsdfVolume::Read(const std::string& path) {
+  openvdb::initialize();
+  try {
+    openvdb::io::File file(path);
+    file.open();
+    Grids grids{ReadGrid<openvdb::FloatGrid>(&file, "distance", path),
+                ReadGrid<openvdb::FloatGrid>(&file, "weight", path),
+                ReadGrid<openvdb::Vec3SGrid>(&file, "color", path)};
+    TsdfOptions options;
+    options.voxel_size = grids.distance->voxelSize()[0];
+    options.truncation = grids.distance->metaValue<double>("truncation");
+    options.max_weight = grids.distance->metaValue<double>("max_weight");
+    TsdfVolume volume(options);
+    *volume.grids_ = grids;
+    return volume;
+  } catch (const openvdb::Exception& e) {
+    throw InputError(path + ": not a readable volume (" + e.what() + ")");
+  }
+}
+
+namespace internal {
+
+std::vector<LeafBuffers> CollectLeaves(TsdfVolume* volume) {
+  TsdfVolume::Grids& grids = volume->grids();
+  std::vector<LeafBuffers> leaves;
+  leaves.reserve(volume->leaf_count());
+  auto weight = grids.weight->tree().beginLeaf();
+  auto color = grids.color->tree().beginLeaf();
+  for (auto leaf = grids.distance->tree().beginLeaf(); leaf;
+       ++leaf, ++weight, ++color) {
+    leaves.push_back({leaf->origin(), leaf->buffer().data(),
+                      weight->buffer().data(), color->buffer().data()});
+  }
+  return leaves;
+}
+
+}  // namespace internal
+}  // namespace splitfusion

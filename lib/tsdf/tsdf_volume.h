@@ -1,0 +1,101 @@
+#ifndef SPLITFUSION_LIB_TSDF_TSDF_VOLUME_H_
+#define SPLITFUSION_LIB_TSDF_TSDF_VOLUME_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/geometry/camera.h"
+#include "splitfusion/lib/geometry/triangle_mesh.h"
+
+namespace splitfusion {
+
+/// Resolution of a volume.
+struct TsdfOptions {
+  double voxel_size = 0.01;   ///< Metres.
+  double truncation = 0.04;   ///< Metres; at least 2 voxels.
+  double max_weight = 64;     ///< Cap of the running mean's weight.
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// What a depth pixel may do to the volume of one surface.
+enum class PixelRole : std::uint8_t {
+  kNone = 0,   ///< Says nothing about this surface.
+  kCarve = 1,  ///< Of another surface: space in front of it is free.
+  kWrite = 2,  ///< Of this surface: its distance is written, and it carves.
+};
+
+/// One depth image, as a volume sees it; all images HxW of the camera.
+struct DepthObservation {
+  PinholeCamera camera;
+  cv::Mat_<float> depth;        ///< Metres, 0 = none.
+  cv::Mat_<float> weight;       ///< Confidence of every pixel, about 0..1.
+  cv::Mat_<std::uint8_t> role;  ///< PixelRole of every pixel.
+  cv::Mat color;                ///< 8UC3, BGR.
+};
+
+/// Truncated signed distance of one surface in its canonical frame, with
+/// weight and colour, in OpenVDB grids (SplitFusion IV-D). Distances are
+/// positive in front of the surface, in metres.
+class TsdfVolume {
+ public:
+  explicit TsdfVolume(const TsdfOptions& options);
+  ~TsdfVolume();
+  TsdfVolume(TsdfVolume&&) noexcept;
+  TsdfVolume& operator=(TsdfVolume&&) noexcept;
+
+  /// Opaque grids; defined where OpenVDB is.
+  struct Grids;
+
+  const TsdfOptions& options() const { return options_; }
+  const Grids& grids() const { return *grids_; }
+  Grids& grids() { return *grids_; }
+
+  /// Number of 8x8x8 blocks in memory.
+  std::size_t leaf_count() const;
+
+  /// Writes grids "distance" (m), "weight" and "color" (RGB, 0..1) to a `.vdb`
+  /// file through a temporary name.
+  ///
+  /// @throw InputError if the file cannot be written.
+  void Write(const std::string& path) const;
+
+  /// Reads what Write wrote.
+  ///
+  /// @throw InputError on a missing, truncated or foreign file.
+  static TsdfVolume Read(const std::string& path);
+
+ private:
+  TsdfOptions options_;
+  std::unique_ptr<Grids> grids_;
+};
+
+/// Allocates the blocks within the truncation band of the writing pixels, for
+/// a surface whose canonical frame is carried rigidly.
+void AllocateBand(const DepthObservation& observation,
+                  const Rigid3d& camera_from_canonical, TsdfVolume* volume);
+
+/// Allocates the blocks within `radius` (metres) of the given canonical points.
+void AllocateAround(const std::vector<Eigen::Vector3d>& points, double radius,
+                    TsdfVolume* volume);
+
+/// Fuses one observation into the allocated blocks of a rigid surface, block by
+/// block in parallel: projective distance, running weighted mean, free-space
+/// carving. Kinect Fusion's update, SplitFusion IV-D.
+void IntegrateRigid(const DepthObservation& observation,
+                    const Rigid3d& camera_from_canonical, TsdfVolume* volume);
+
+/// Triangle mesh of the zero level with normals and colours, canonical frame.
+/// Only where all voxels around a vertex were observed with at least
+/// `min_weight`. Triangles are counter-clockwise seen from outside.
+TriangleMesh ExtractMesh(const TsdfVolume& volume, double min_weight);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_TSDF_TSDF_VOLUME_H_

@@ -1,0 +1,152 @@
+#include "splitfusion/lib/tsdf/warped_integration.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+#include <unordered_map>
+#include <vector>
+
+#include "splitfusion/lib/tsdf/internal/grids.h"
+
+namespace splitfusion {
+namespace {
+
+using internal::kLeafSize;
+
+constexpr int kCell = 4;                        // Voxels between lattice points.
+constexpr int kLattice = kLeafSize / kCell + 1;  // Points along an edge: 3.
+constexpr int kLatticePoints = kLattice * kLattice * kLattice;
+
+struct LeafLattice {
+  bool attached = false;  // Some node is near enough.
+  std::array<Skinning, kLatticePoints> skinning;
+};
+
+using WarpedLattice = std::array<Eigen::Vector3f, kLatticePoints>;
+
+Eigen::Vector3f LatticePoint(const openvdb::Coord& origin, float voxel, int x,
+                             int y, int z) {
+  return voxel * Eigen::Vector3f(static_cast<float>(origin.x() + kCell * x),
+                                 static_cast<float>(origin.y() + kCell * y),
+                                 static_cast<float>(origin.z() + kCell * z));
+}
+
+LeafLattice SkinLeaf(const openvdb::Coord& origin, float voxel, float reach,
+                     const SkinningIndex& index) {
+  LeafLattice lattice;
+  const Eigen::Vector3f center = LatticePoint(origin, voxel, 1, 1, 1);
+  const float half_diagonal = 0.87f * voxel * kLeafSize;
+  float distance = 0;
+  index.NearestNode(center, &distance);
+  lattice.attached = distance < reach + half_diagonal;
+  if (!lattice.attached) return lattice;
+  int i = 0;
+  for (int x = 0; x < kLattice; ++x) {
+    for (int y = 0; y < kLattice; ++y) {
+      for (int z = 0; z < kLattice; ++z) {
+        lattice.skinning[i++] = index.Skin(LatticePoint(origin, voxel, x, y, z));
+      }
+    }
+  }
+  return lattice;
+}
+
+WarpedLattice WarpLeaf(const openvdb::Coord& origin, float voxel,
+                       const LeafLattice& lattice, const WarpField& warp) {
+  WarpedLattice warped;
+  int i = 0;
+  for (int x = 0; x < kLattice; ++x) {
+    for (int y = 0; y < kLattice; ++y) {
+      for (int z = 0; z < kLattice; ++z, ++i) {
+        warped[i] = warp.WarpPoint(lattice.skinning[i],
+                                   LatticePoint(origin, voxel, x, y, z));
+      }
+    }
+  }
+  return warped;
+}
+
+void IntegrateLeaf(const internal::VoxelUpdater& updater,
+                   const WarpedLattice& warped,
+                   const internal::LeafBuffers& leaf) {
+  const auto at = [&](int x, int y, int z) -> const Eigen::Vector3f& {
+    return warped[(x * kLattice + y) * kLattice + z];
+  };
+  int offset = 0;
+  for (int x = 0; x < kLeafSize; ++x) {
+    const int cx = x / kCell;
+    const float fx = static_cast<float>(x % kCell) / kCell;
+    for (int y = 0; y < kLeafSize; ++y) {
+      const int cy = y / kCell;
+      const float fy = static_cast<float>(y % kCell) / kCell;
+      std::array<Eigen::Vector3f, kLattice> column;
+      for (int z = 0; z < kLattice; ++z) {
+        const Eigen::Vector3f low =
+            at(cx, cy, z) + fx * (at(cx + 1, cy, z) - at(cx, cy, z));
+        const Eigen::Vector3f high =
+            at(cx, cy + 1, z) +
+            fx * (at(cx + 1, cy + 1, z) - at(cx, cy + 1, z));
+        column[z] = low + fy * (high - low);
+      }
+      for (int z = 0; z < kLeafSize; ++z, ++offset) {
+        const int cz = z / kCell;
+        const float fz = static_cast<float>(z % kCell) / kCell;
+        updater.Update(column[cz] + fz * (column[cz + 1] - column[cz]),
+                       leaf.distance + offset, leaf.weight + offset,
+                       leaf.color + offset);
+      }
+    }
+  }
+}
+
+struct CoordHash {
+  std::size_t operator()(const openvdb::Coord& c) const {
+    return static_cast<std::size_t>(c.hash<24>());
+  }
+};
+
+}  // namespace
+
+struct WarpedIntegrator::Cache {
+  std::unordered_map<openvdb::Coord, LeafLattice, CoordHash> lattices;
+};
+
+WarpedIntegrator::WarpedIntegrator() : cache_(std::make_unique<Cache>()) {}
+WarpedIntegrator::~WarpedIntegrator() = default;
+WarpedIntegrator::WarpedIntegrator(WarpedIntegrator&&) noexcept = default;
+WarpedIntegrator& WarpedIntegrator::operator=(WarpedIntegrator&&) noexcept =
+    default;
+
+void WarpedIntegrator::InvalidateSkinning() { cache_->lattices.clear(); }
+
+void WarpedIntegrator::Integrate(const DepthObservation& observation,
+                                 const SkinningIndex& index,
+                                 const WarpField& warp, double reach,
+                                 TsdfVolume* volume) {
+  const std::vector<internal::LeafBuffers> leaves =
+      internal::CollectLeaves(volume);
+  const internal::VoxelUpdater updater{
+      observation, static_cast<float>(volume->options().truncation),
+      static_cast<float>(volume->options().max_weight)};
+  const float voxel = static_cast<float>(volume->options().voxel_size);
+  std::vector<LeafLattice*> lattices;
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const auto [entry, is_new] = cache_->lattices.try_emplace(leaves[i].origin);
+    lattices.push_back(&entry->second);
+    if (is_new) missing.push_back(i);
+  }
+  tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
+    const std::size_t i = missing[m];
+    *lattices[i] = SkinLeaf(leaves[i].origin, voxel,
+                            static_cast<float>(reach), index);
+  });
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
+    if (!lattices[i]->attached) return;
+    IntegrateLeaf(updater, WarpLeaf(leaves[i].origin, voxel, *lattices[i], warp),
+                  leaves[i]);
+  });
+}
+
+}  // namespace splitfusion

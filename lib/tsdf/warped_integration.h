@@ -1,0 +1,43 @@
+#ifndef SPLITFUSION_LIB_TSDF_WARPED_INTEGRATION_H_
+#define SPLITFUSION_LIB_TSDF_WARPED_INTEGRATION_H_
+
+#include <memory>
+
+#include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/tsdf/tsdf_volume.h"
+
+namespace splitfusion {
+
+/// Fuses depth into the volume of a non-rigid surface (SplitFusion IV-D): voxel
+/// centres are warped into the camera frame first, then updated as in the
+/// rigid case.
+///
+/// Within a block the warp is evaluated by Eq. 2 on a lattice of every fourth
+/// voxel and interpolated trilinearly in between: over 4 voxels (2 cm) the
+/// blend of neighbouring nodes is linear up to a fraction of a millimetre. The
+/// lattice's skinning is kept between frames and made anew when the graph has
+/// changed.
+class WarpedIntegrator {
+ public:
+  WarpedIntegrator();
+  ~WarpedIntegrator();
+  WarpedIntegrator(WarpedIntegrator&&) noexcept;
+  WarpedIntegrator& operator=(WarpedIntegrator&&) noexcept;
+
+  /// Forgets all skinning; to be called when the graph has grown.
+  void InvalidateSkinning();
+
+  /// Fuses one observation. Blocks farther than `reach` (metres) from every
+  /// node are left alone.
+  void Integrate(const DepthObservation& observation,
+                 const SkinningIndex& index, const WarpField& warp,
+                 double reach, TsdfVolume* volume);
+
+ private:
+  struct Cache;
+  std::unique_ptr<Cache> cache_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_TSDF_WARPED_INTEGRATION_H_
