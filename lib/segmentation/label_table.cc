@@ -1,0 +1,68 @@
+#include "splitfusion/lib/segmentation/label_table.h"
+
+#include <fstream>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+std::string Trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+}
+
+/// Applies one line `class, kind`; false if it does not parse.
+bool ApplyLine(const std::string& line, LabelTable* table) {
+  const std::size_t comma = line.rfind(',');
+  if (comma == std::string::npos) return false;
+  const std::string class_name = Trimmed(line.substr(0, comma));
+  const std::string kind = Trimmed(line.substr(comma + 1));
+  if (class_name.empty()) return false;
+  if (kind != "rigid" && kind != "non_rigid") return false;
+  table->Set(class_name,
+             kind == "rigid" ? SurfaceKind::kRigid : SurfaceKind::kNonRigid);
+  return true;
+}
+
+}  // namespace
+
+std::string ToString(SurfaceKind kind) {
+  return kind == SurfaceKind::kRigid ? "rigid" : "non_rigid";
+}
+
+LabelTable::LabelTable()
+    : non_rigid_{"person",  "bird",       "cat",      "dog",  "horse",
+                 "sheep",   "cow",        "elephant", "bear", "zebra",
+                 "giraffe", "teddy bear", "umbrella", "tie",  "object"} {}
+
+LabelTable LabelTable::FromFile(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  LabelTable table;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    line = Trimmed(line.substr(0, line.find('#')));
+    if (line.empty() || ApplyLine(line, &table)) continue;
+    throw InputError(path + ":" + std::to_string(number) + ": '" + line +
+                     "': expected 'class name, rigid' or 'class name, "
+                     "non_rigid'");
+  }
+  return table;
+}
+
+void LabelTable::Set(const std::string& class_name, SurfaceKind kind) {
+  if (kind == SurfaceKind::kNonRigid) {
+    non_rigid_.insert(class_name);
+  } else {
+    non_rigid_.erase(class_name);
+  }
+}
+
+SurfaceKind LabelTable::Kind(const std::string& class_name) const {
+  return non_rigid_.count(class_name) > 0 ? SurfaceKind::kNonRigid
+                                          : SurfaceKind::kRigid;
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,175 @@
+#include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/sequence/image_file.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// One entry of STEM.json.
+struct Detection {
+  int index = 0;
+  std::string class_name;
+  double score = 1;
+};
+
+/// Names of the files in `folder` with `extension`, in order.
+std::vector<std::string> ListFiles(const std::string& folder,
+                                   const std::string& extension) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == extension) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Json ReadJson(const std::string& path) {
+  std::ifstream stream(path);
+  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_array()) {
+    throw InputError(path +
+                     ": no JSON list: expected [{\"index\": 1, "
+                     "\"class\": \"person\", \"score\": 0.9}, ...]");
+  }
+  return json;
+}
+
+Detection ParseDetection(const std::string& path, const Json& entry,
+                         const std::string& unnamed_class) {
+  Detection detection;
+  try {
+    detection.index = entry.at("index").get<int>();
+    detection.class_name = entry.value("class", unnamed_class);
+    detection.score = entry.value("score", 1.0);
+  } catch (const Json::exception&) {
+    detection.index = 0;
+  }
+  const bool ok = detection.index >= 1 && detection.index <= 65535 &&
+                  detection.score >= 0 && detection.score <= 1;
+  if (!ok) {
+    throw InputError(path + ": detection " + entry.dump() +
+                     ": expected an index of 1..65535, a class name and a "
+                     "score of 0..1");
+  }
+  return detection;
+}
+
+std::vector<Detection> ReadDetections(const std::string& path,
+                                      const std::string& unnamed_class) {
+  std::vector<Detection> detections;
+  for (const Json& entry : ReadJson(path)) {
+    detections.push_back(ParseDetection(path, entry, unnamed_class));
+  }
+  return detections;
+}
+
+std::vector<Detection> DetectionsOfValues(const cv::Mat& labels,
+                                          const std::string& unnamed_class) {
+  std::set<int> values(labels.begin<std::uint16_t>(),
+                       labels.end<std::uint16_t>());
+  values.erase(0);
+  std::vector<Detection> detections;
+  for (const int value : values) {
+    detections.push_back({value, unnamed_class, 1.0});
+  }
+  return detections;
+}
+
+/// Class of `STEM_CLASS.png` or `STEM_CLASS_NUMBER.png`; `_` is a space.
+std::string ClassOfFile(const std::string& name, const std::string& prefix) {
+  std::string text = fs::path(name.substr(prefix.size())).stem().string();
+  std::replace(text.begin(), text.end(), '_', ' ');
+  const std::size_t last = text.find_last_not_of("0123456789");
+  if (last != std::string::npos && text[last] == ' ') text.erase(last);
+  return text;
+}
+
+cv::Mat ReadMask(const std::string& path, const Frame& frame) {
+  cv::Mat labels = ReadLabelImage(path);
+  if (labels.size() == frame.color.size()) return labels;
+  throw InputError(path + ": mask of " + ToString(labels.size()) +
+                   ": expected " + ToString(frame.color.size()) +
+                   ", the size of the frame");
+}
+
+void AddInstance(const cv::Mat& mask, const Detection& detection,
+                 std::vector<InstanceMask>* instances) {
+  if (cv::countNonZero(mask) == 0) return;
+  instances->push_back({mask, detection.class_name, detection.score});
+}
+
+}  // namespace
+
+MaskFolderSegmenter::MaskFolderSegmenter(const std::string& folder,
+                                         const std::string& unnamed_class)
+    : folder_(folder), unnamed_class_(unnamed_class) {
+  if (!fs::is_directory(folder)) {
+    throw InputError(folder +
+                     ": no such folder: expected masks, one png a "
+                     "frame");
+  }
+  instance_files_ = ListFiles(folder, ".png");
+  if (instance_files_.empty()) {
+    throw InputError(folder +
+                     ": 0 png files: expected masks named after the "
+                     "depth files");
+  }
+  instance_files_.erase(
+      std::remove_if(instance_files_.begin(), instance_files_.end(),
+                     [](const std::string& name) {
+                       return name.find('_') == std::string::npos;
+                     }),
+      instance_files_.end());
+}
+
+std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
+  std::vector<InstanceMask> instances;
+  const fs::path root(folder_);
+  const std::string label_path = (root / (frame.stem + ".png")).string();
+  if (fs::exists(label_path)) {
+    const cv::Mat labels = ReadMask(label_path, frame);
+    const std::string json_path = (root / (frame.stem + ".json")).string();
+    const std::vector<Detection> detections =
+        fs::exists(json_path) ? ReadDetections(json_path, unnamed_class_)
+                              : DetectionsOfValues(labels, unnamed_class_);
+    for (const Detection& detection : detections) {
+      AddInstance(labels == detection.index, detection, &instances);
+    }
+  }
+  const std::string prefix = frame.stem + "_";
+  for (const std::string& name : instance_files_) {
+    if (name.compare(0, prefix.size(), prefix) != 0) continue;
+    AddInstance(ReadMask((root / name).string(), frame) != 0,
+                {1, ClassOfFile(name, prefix), 1.0}, &instances);
+  }
+  std::stable_sort(instances.begin(), instances.end(),
+                   [](const InstanceMask& a, const InstanceMask& b) {
+                     return a.score > b.score;
+                   });
+  return instances;
+}
+
+std::string FindMaskFolder(const std::string& sequence) {
+  const fs::path detected = fs::path(sequence) / "masks_noisy";
+  if (fs::is_directory(detected) &&
+      !ListFiles(detected.string(), ".json").empty()) {
+    return detected.string();
+  }
+  const fs::path plain = fs::path(sequence) / "mask";
+  return fs::is_directory(plain) ? plain.string() : "";
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,54 @@
+#ifndef SPLITFUSION_LIB_SEGMENTATION_MASK_FOLDER_SEGMENTER_H_
+#define SPLITFUSION_LIB_SEGMENTATION_MASK_FOLDER_SEGMENTER_H_
+
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/segmentation/segmenter.h"
+
+namespace splitfusion {
+
+/// Class of a mask without one that is to be a non-rigid surface.
+inline constexpr char kUnnamedClass[] = "object";
+/// Class of a mask without one that is to be a rigid surface.
+inline constexpr char kUnnamedRigidClass[] = "rigid_object";
+
+/// Masks from files, any segmenter's output. Per frame, by the stem of its
+/// depth file, one of
+///  - `STEM.png`, 8 or 16 bit, pixel = index of the detection, 0 = none, with
+///    `STEM.json` = [{"index", "class", "score", "bbox"}, ...]; pixels of an
+///    index that the list does not name are left out;
+///  - `STEM.png` alone: every value above 0 is an instance without class (a
+///    0/255 mask is one);
+///  - `STEM_CLASS.png`, any number: one instance each, inside where not 0;
+///    `_` in CLASS stands for a space, and `_NUMBER` may follow.
+/// A frame without a file has no detections; a detection without a pixel is
+/// dropped.
+class MaskFolderSegmenter : public Segmenter {
+ public:
+  /// `unnamed_class`: class of masks without one; kUnnamedClass or
+  /// kUnnamedRigidClass, or any name of the label table.
+  ///
+  /// @throw InputError if the folder is missing or holds no png.
+  explicit MaskFolderSegmenter(
+      const std::string& folder,
+      const std::string& unnamed_class = kUnnamedClass);
+
+  /// @throw InputError on a broken file or a mask of another size than the
+  ///     frame.
+  std::vector<InstanceMask> Segment(const Frame& frame) override;
+
+ private:
+  std::string folder_;
+  std::string unnamed_class_;
+  /// Instance files (`STEM_CLASS.png`) by file name.
+  std::vector<std::string> instance_files_;
+};
+
+/// The masks found beside a sequence: `masks_noisy` if it holds detections
+/// (a json file), else `mask`, else an empty string.
+std::string FindMaskFolder(const std::string& sequence);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SEGMENTATION_MASK_FOLDER_SEGMENTER_H_

@@ -1,0 +1,122 @@
+#include "splitfusion/lib/sequence/calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+std::ifstream OpenText(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  return stream;
+}
+
+/// Next line that is neither blank nor a comment; the comment is cut off.
+bool NextLine(std::istream& stream, std::string* line, int* number) {
+  while (std::getline(stream, *line)) {
+    ++*number;
+    line->erase(std::min(line->find('#'), line->size()));
+    if (line->find_first_not_of(" \t\r") != std::string::npos) return true;
+  }
+  return false;
+}
+
+std::string Place(const std::string& path, int line) {
+  return path + ":" + std::to_string(line);
+}
+
+void CheckCalibration(const std::string& path, const Calibration& calibration) {
+  try {
+    calibration.Check();
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  }
+}
+
+std::map<std::string, double> ReadKeys(const std::string& path) {
+  std::ifstream stream = OpenText(path);
+  std::map<std::string, double> values;
+  std::string line;
+  for (int number = 0; NextLine(stream, &line, &number);) {
+    std::istringstream words(line);
+    std::string key;
+    double value = 0;
+    if (!(words >> key >> value)) {
+      throw InputError(Place(path, number) + ": '" + line +
+                       "': expected 'key value'");
+    }
+    values[key] = value;
+  }
+  return values;
+}
+
+double Require(const std::string& path,
+               const std::map<std::string, double>& values,
+               const std::string& key) {
+  const auto found = values.find(key);
+  if (found != values.end()) return found->second;
+  throw InputError(path + ": no line '" + key +
+                   " VALUE': expected width, height, fx, fy, cx, cy, "
+                   "depth_scale");
+}
+
+}  // namespace
+
+void Calibration::Check() const {
+  camera.Check();
+  CheckOption(std::isfinite(depth_scale) && depth_scale > 0, "depth scale",
+              depth_scale, "positive units per metre (TUM: 5000)");
+}
+
+Calibration ReadCalibrationLine(const std::string& path) {
+  std::ifstream stream = OpenText(path);
+  Calibration result;
+  PinholeCamera& camera = result.camera;
+  std::string line;
+  int number = 0;
+  if (!NextLine(stream, &line, &number)) {
+    throw InputError(path +
+                     ": no line: expected 'fx fy cx cy width height "
+                     "depth_factor'");
+  }
+  std::istringstream words(line);
+  if (!(words >> camera.fx >> camera.fy >> camera.cx >> camera.cy >>
+        camera.width >> camera.height >> result.depth_scale)) {
+    throw InputError(Place(path, number) + ": '" + line +
+                     "': expected 'fx fy cx cy width height depth_factor'");
+  }
+  CheckCalibration(path, result);
+  return result;
+}
+
+Calibration ReadCalibrationKeys(const std::string& path) {
+  const std::map<std::string, double> values = ReadKeys(path);
+  Calibration result;
+  result.camera.width = static_cast<int>(Require(path, values, "width"));
+  result.camera.height = static_cast<int>(Require(path, values, "height"));
+  result.camera.fx = Require(path, values, "fx");
+  result.camera.fy = Require(path, values, "fy");
+  result.camera.cx = Require(path, values, "cx");
+  result.camera.cy = Require(path, values, "cy");
+  result.depth_scale = Require(path, values, "depth_scale");
+  CheckCalibration(path, result);
+  return result;
+}
+
+std::optional<Calibration> FindCalibration(const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path line_file = fs::path(folder) / "calibration.txt";
+  if (fs::exists(line_file)) return ReadCalibrationLine(line_file.string());
+  const fs::path key_file = fs::path(folder) / "camera.txt";
+  if (fs::exists(key_file)) return ReadCalibrationKeys(key_file.string());
+  return std::nullopt;
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,40 @@
+#ifndef SPLITFUSION_LIB_SEQUENCE_CALIBRATION_H_
+#define SPLITFUSION_LIB_SEQUENCE_CALIBRATION_H_
+
+#include <optional>
+#include <string>
+
+#include "splitfusion/lib/geometry/camera.h"
+
+namespace splitfusion {
+
+/// Intrinsics and depth scale of a sequence.
+struct Calibration {
+  PinholeCamera camera;
+  double depth_scale = 0;  ///< Depth image units in a metre (TUM: 5000).
+
+  /// @throw InputError if the camera or the scale is out of range.
+  void Check() const;
+};
+
+/// Reads `calibration.txt`: one line `fx fy cx cy width height depth_factor`,
+/// `#` comments.
+///
+/// @throw InputError on a missing file or a value that does not parse.
+Calibration ReadCalibrationLine(const std::string& path);
+
+/// Reads `camera.txt`: `key value` lines with the keys width, height, fx, fy,
+/// cx, cy, depth_scale; `#` comments.
+///
+/// @throw InputError on a missing file, an unknown or a missing key.
+Calibration ReadCalibrationKeys(const std::string& path);
+
+/// Reads `calibration.txt` or else `camera.txt` of a folder; empty if there is
+/// neither.
+///
+/// @throw InputError if the file is there but broken.
+std::optional<Calibration> FindCalibration(const std::string& folder);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SEQUENCE_CALIBRATION_H_

@@ -1,0 +1,94 @@
+#include "splitfusion/lib/sequence/depth_filter.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/point_map.h"
+
+namespace splitfusion {
+namespace {
+
+/// -1 nearer, 0 alike, 1 farther, 2 no measurement.
+int Compare(float z, float other, float gate) {
+  if (other <= 0) return 2;
+  if (other < z - gate) return -1;
+  return other > z + gate ? 1 : 0;
+}
+
+/// (u, v) must not lie on the image border.
+bool IsFlying(const cv::Mat& depth, int u, int v) {
+  const float z = depth.at<float>(v, u);
+  const float gate = 5 * DepthSigma(z) + 0.01f;
+  constexpr std::array<std::array<int, 2>, 4> kDirections = {
+      {{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+  int alike = 0;
+  bool between = false;
+  for (const auto& [du, dv] : kDirections) {
+    const int a = Compare(z, depth.at<float>(v + dv, u + du), gate);
+    const int b = Compare(z, depth.at<float>(v - dv, u - du), gate);
+    alike += (a == 0) + (b == 0);
+    between |= (a == -1 && b == 1) || (a == 1 && b == -1);
+  }
+  // A pixel of a thin, slanted surface has at least two neighbours along it,
+  // a mixed pixel of a straight edge at most two other mixed ones.
+  return between && alike <= 2;
+}
+
+cv::Mat Bilateral(const cv::Mat& depth, const DepthFilterOptions& options) {
+  cv::Mat smooth;
+  cv::bilateralFilter(depth, smooth, options.bilateral_diameter,
+                      options.bilateral_sigma_depth,
+                      options.bilateral_sigma_pixels);
+  smooth.setTo(0, depth == 0);
+  return smooth;
+}
+
+}  // namespace
+
+void DepthFilterOptions::Check() const {
+  CheckOption(std::isfinite(min_depth) && min_depth >= 0, "min_depth",
+              min_depth, "metres >= 0");
+  CheckOption(std::isfinite(max_depth) && max_depth > min_depth, "max_depth",
+              max_depth, "metres above min_depth");
+  CheckOption(bilateral_diameter >= 0 && bilateral_diameter <= 31,
+              "bilateral_diameter", bilateral_diameter, "0 (off) to 31 pixels");
+  CheckOption(bilateral_sigma_depth > 0, "bilateral_sigma_depth",
+              bilateral_sigma_depth, "positive metres");
+  CheckOption(bilateral_sigma_pixels > 0, "bilateral_sigma_pixels",
+              bilateral_sigma_pixels, "positive pixels");
+}
+
+cv::Mat DepthInMetres(const cv::Mat& raw, double depth_scale) {
+  cv::Mat depth;
+  raw.convertTo(depth, CV_32F, 1 / depth_scale);
+  return depth;
+}
+
+void RemoveOutOfRange(double min_depth, double max_depth, cv::Mat* depth) {
+  depth->setTo(0, (*depth < min_depth) | (*depth > max_depth));
+}
+
+void RemoveFlyingPixels(cv::Mat* depth) {
+  const cv::Mat source = depth->clone();
+  tbb::parallel_for(1, source.rows - 1, [&](int v) {
+    for (int u = 1; u + 1 < source.cols; ++u) {
+      if (source.at<float>(v, u) > 0 && IsFlying(source, u, v)) {
+        depth->at<float>(v, u) = 0;
+      }
+    }
+  });
+}
+
+cv::Mat FilterDepth(const cv::Mat& depth, const DepthFilterOptions& options) {
+  cv::Mat filtered = depth.clone();
+  RemoveOutOfRange(options.min_depth, options.max_depth, &filtered);
+  if (options.remove_flying_pixels) RemoveFlyingPixels(&filtered);
+  if (options.bilateral_diameter > 0) filtered = Bilateral(filtered, options);
+  return filtered;
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,41 @@
+#ifndef SPLITFUSION_LIB_SEQUENCE_DEPTH_FILTER_H_
+#define SPLITFUSION_LIB_SEQUENCE_DEPTH_FILTER_H_
+
+#include <opencv2/core.hpp>
+
+namespace splitfusion {
+
+/// What is done to a depth image before it is used.
+struct DepthFilterOptions {
+  double min_depth = 0.4;  ///< Metres; nearer measurements are dropped.
+  double max_depth = 5.0;  ///< Metres; farther measurements are dropped.
+  /// Drop pixels between a near and a far surface that belong to neither.
+  bool remove_flying_pixels = true;
+  /// Diameter of the bilateral filter, pixels; 0 switches it off.
+  int bilateral_diameter = 0;
+  double bilateral_sigma_depth = 0.03;  ///< Metres.
+  double bilateral_sigma_pixels = 2.0;  ///< Pixels.
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// Metres of an HxW 16UC1 depth image with `depth_scale` units a metre, as
+/// 32FC1; 0 stays 0.
+cv::Mat DepthInMetres(const cv::Mat& raw, double depth_scale);
+
+/// Sets measurements outside of [min_depth, max_depth] (metres) to 0.
+void RemoveOutOfRange(double min_depth, double max_depth, cv::Mat* depth);
+
+/// Drops flying pixels: those with one neighbour clearly nearer and the
+/// opposite one clearly farther than themselves, and with hardly any neighbour
+/// at their own depth. "Clearly" is five times the axial noise and 1 cm.
+void RemoveFlyingPixels(cv::Mat* depth);
+
+/// Applies range, flying-pixel removal and bilateral filter, in this order, to
+/// an HxW 32FC1 depth image (metres, 0 = none).
+cv::Mat FilterDepth(const cv::Mat& depth, const DepthFilterOptions& options);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SEQUENCE_DEPTH_FILTER_H_
