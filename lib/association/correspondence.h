@@ -12,7 +12,8 @@ namespace splitfusion {
 struct ModelSample {
   Eigen::Vector3f point;   ///< Canonical, metres.
   Eigen::Vector3f normal;  ///< Canonical, unit length, outward.
-  float intensity = 0;     ///< Model colour as grey, 0..1; < 0 = unknown.
+  int u = 0;               ///< Column of the full image it was rendered at.
+  int v = 0;               ///< Row of the full image it was rendered at.
   Skinning skinning;       ///< Nodes that carry it.
 };
 

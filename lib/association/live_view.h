@@ -1,0 +1,44 @@
+#ifndef SPLITFUSION_LIB_ASSOCIATION_LIVE_VIEW_H_
+#define SPLITFUSION_LIB_ASSOCIATION_LIVE_VIEW_H_
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+
+#include "splitfusion/lib/geometry/camera.h"
+#include "splitfusion/lib/geometry/point_map.h"
+
+namespace splitfusion {
+
+/// The live frame as association and fusion see it; all images HxW.
+struct LiveView {
+  PinholeCamera camera;
+  PointMap map;                   ///< Points and normals, camera frame.
+  cv::Mat color;                  ///< 8UC3, BGR.
+  cv::Mat_<float> depth;          ///< Metres, 0 = none.
+  cv::Mat_<float> confidence;     ///< (sigma_0 / sigma(z))^2 at most 1, times
+                                  ///< the cosine of the viewing angle.
+  cv::Mat_<std::uint8_t> edges;   ///< 255 within 2 px of a depth edge.
+  cv::Mat_<std::uint16_t> labels; ///< Surface id of every pixel.
+  cv::Mat_<std::uint8_t> uncertain;  ///< 255: belongs to no surface for sure.
+};
+
+/// Depth at which the confidence of a pixel is 1, metres: noise of 3 mm.
+constexpr float kReferenceDepth = 1.4f;
+
+/// Confidence (sigma(kReferenceDepth) / sigma(depth))^2, at most 1.
+inline float DepthConfidence(float depth) {
+  const float ratio = DepthSigma(kReferenceDepth) / DepthSigma(depth);
+  return ratio < 1 ? ratio * ratio : 1.0f;
+}
+
+/// Builds points, normals, confidence and edges of a frame. Labels and
+/// `uncertain` start as background everywhere and certain.
+///
+/// `depth` 32FC1 metres, `color` 8UC3, both of the camera's size.
+/// @throw InputError if a type or size does not fit.
+LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
+                      const cv::Mat& color);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ASSOCIATION_LIVE_VIEW_H_
