@@ -83,6 +83,17 @@ class WarpField {
     return warped.normalized();
   }
 
+  /// Camera frame unit normal -> canonical, the inverse of WarpNormal.
+  Eigen::Vector3f UnwarpNormal(const Skinning& skinning,
+                               const Eigen::Vector3f& normal) const {
+    Eigen::Vector3f unwarped = Eigen::Vector3f::Zero();
+    for (int k = 0; k < skinning.count; ++k) {
+      unwarped += skinning.weights[k] *
+                  (maps_[skinning.nodes[k]].linear.transpose() * normal);
+    }
+    return unwarped.normalized();
+  }
+
   /// The blended motion of a point as a node would have it if it stood there
   /// (`point` canonical): its Eq. 1 agrees with Eq. 2 at the point.
   NodeMotion BlendMotion(const Skinning& skinning,

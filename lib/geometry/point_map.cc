@@ -55,6 +55,7 @@ class NormalEstimator {
   NormalEstimator(const cv::Mat& depth, const PinholeCamera& camera,
                   const PointMapOptions& options)
       : depth_(depth),
+        inverse_depth_(1.0 / depth),
         options_(options),
         inverse_fx_(static_cast<float>(1 / camera.fx)),
         inverse_fy_(static_cast<float>(1 / camera.fy)),
@@ -67,17 +68,21 @@ class NormalEstimator {
 
   cv::Vec3f Normal(int u, int v, float z) const {
     const int radius = options_.normal_radius;
-    const float gate = static_cast<float>(
-        options_.edge_factor * DepthSigma(z) + options_.edge_offset);
+    // Below z, so that pixels without depth never pass.
+    const float gate =
+        std::min(0.9f * z, static_cast<float>(options_.edge_factor *
+                                                  DepthSigma(z) +
+                                              options_.edge_offset));
     InverseDepthPlane plane;
     const int v_end = std::min(v + radius, depth_.rows - 1);
     const int u_begin = std::max(u - radius, 0);
     const int u_end = std::min(u + radius, depth_.cols - 1);
     for (int j = std::max(v - radius, 0); j <= v_end; ++j) {
       const float* row = depth_.ptr<float>(j);
+      const float* inverse = inverse_depth_.ptr<float>(j);
       for (int i = u_begin; i <= u_end; ++i) {
-        if (row[i] > 0 && std::abs(row[i] - z) < gate) {
-          plane.Add((i - u) * inverse_fx_, (j - v) * inverse_fy_, 1 / row[i]);
+        if (std::abs(row[i] - z) < gate) {
+          plane.Add((i - u) * inverse_fx_, (j - v) * inverse_fy_, inverse[i]);
         }
       }
     }
@@ -96,6 +101,7 @@ class NormalEstimator {
 
  private:
   const cv::Mat& depth_;
+  const cv::Mat inverse_depth_;  // Of no use where there is no depth.
   const PointMapOptions& options_;
   const float inverse_fx_, inverse_fy_, cx_, cy_;
 };

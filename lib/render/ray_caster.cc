@@ -212,6 +212,29 @@ void RayCastOptions::Check() const {
   CheckOption(min_weight >= 0, "ray_min_weight", min_weight, ">= 0");
 }
 
+cv::Mat_<float> RayCastDepth(const TsdfVolume& volume,
+                             const Rigid3d& camera_from_canonical,
+                             const PinholeCamera& camera,
+                             const RayCastOptions& options) {
+  cv::Mat_<float> depth(camera.height, camera.width);
+  const Rigid3f motion = camera_from_canonical.cast<float>();
+  tbb::parallel_for(
+      tbb::blocked_range<int>(0, camera.height, 8),
+      [&](const tbb::blocked_range<int>& rows) {
+        Caster caster(volume, motion, options);
+        for (int v = rows.begin(); v < rows.end(); ++v) {
+          for (int u = 0; u < camera.width; ++u) {
+            Eigen::Vector3f position, gradient;
+            depth(v, u) = caster.Cast(
+                camera.BackProject<float>(static_cast<float>(u),
+                                          static_cast<float>(v), 1.0f),
+                &position, &gradient);
+          }
+        }
+      });
+  return depth;
+}
+
 ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
                  const PinholeCamera& camera, const RayCastOptions& options) {
   ModelMap map;

@@ -11,7 +11,7 @@ namespace splitfusion {
 struct RayCastOptions {
   double min_depth = 0.2;   ///< Metres along the optical axis.
   double max_depth = 6.0;   ///< Metres along the optical axis.
-  double min_weight = 1.0;  ///< Voxels observed less are not surface.
+  double min_weight = 0.01;  ///< Voxels observed less are not surface.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
@@ -20,8 +20,15 @@ struct RayCastOptions {
 /// Per-pixel ray casting of the zero level of a rigid surface (SplitFusion
 /// IV-D): rays skip empty space block by block, walk the voxels of a block and
 /// refine the first crossing from front to back by trilinear interpolation.
+/// Normals are the gradient of the distance.
 ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
                  const PinholeCamera& camera, const RayCastOptions& options);
+
+/// Only the z-depth of that, HxW, metres, 0 = nothing.
+cv::Mat_<float> RayCastDepth(const TsdfVolume& volume,
+                             const Rigid3d& camera_from_canonical,
+                             const PinholeCamera& camera,
+                             const RayCastOptions& options);
 
 }  // namespace splitfusion
 

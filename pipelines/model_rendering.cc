@@ -1,0 +1,193 @@
+#include "splitfusion/pipelines/model_rendering.h"
+
+#include <tbb/parallel_for.h>
+
+#include <opencv2/imgproc.hpp>
+
+namespace splitfusion {
+namespace {
+
+Eigen::Vector3f Interpolated(const std::vector<Eigen::Vector3f>& values,
+                             const Eigen::Vector3i& triangle,
+                             const cv::Vec3f& weights) {
+  return weights[0] * values[triangle[0]] + weights[1] * values[triangle[1]] +
+         weights[2] * values[triangle[2]];
+}
+
+cv::Vec3b InterpolatedColor(const TriangleMesh& mesh,
+                            const Eigen::Vector3i& triangle,
+                            const cv::Vec3f& weights) {
+  cv::Vec3b bgr;
+  for (int channel = 0; channel < 3; ++channel) {
+    float value = 0;
+    for (int k = 0; k < 3; ++k) {
+      value += weights[k] * mesh.colors[triangle[k]][2 - channel];
+    }
+    bgr[channel] = cv::saturate_cast<std::uint8_t>(value);
+  }
+  return bgr;
+}
+
+/// Calls visit(v, u, triangle, weights) for every pixel of one surface.
+template <typename Visit>
+void ForEachPixel(const MeshRendering& rendering, const Surface& surface,
+                  const Visit& visit) {
+  const auto first = rendering.first_triangle.find(surface.id());
+  if (first == rendering.first_triangle.end()) return;
+  const int begin = first->second;
+  const int end = begin + static_cast<int>(surface.mesh().triangles.size());
+  for (int v = 0; v < rendering.camera.height; ++v) {
+    for (int u = 0; u < rendering.camera.width; ++u) {
+      const int triangle = rendering.raster.triangle(v, u);
+      if (triangle >= begin && triangle < end) {
+        visit(v, u, surface.mesh().triangles[triangle - begin],
+              rendering.raster.barycentric(v, u));
+      }
+    }
+  }
+}
+
+Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
+
+cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace
+
+MeshRendering RenderMeshes(const SurfaceMap& surfaces,
+                           const PinholeCamera& camera) {
+  MeshRendering rendering;
+  rendering.camera = camera;
+  rendering.raster.Clear(camera);
+  int first = 0;
+  for (const auto& [id, surface] : surfaces) {
+    if (surface->is_ray_cast()) continue;
+    rendering.first_triangle[id] = first;
+    RasterizeTriangles(surface->WarpedVertices(), surface->mesh().triangles,
+                       camera, /*cull_back_faces=*/true, first,
+                       &rendering.raster);
+    first += static_cast<int>(surface->mesh().triangles.size());
+  }
+  if (first > 0) {
+    rendering.normals =
+        ComputePointMap(rendering.raster.depth, camera).normals;
+  }
+  return rendering;
+}
+
+SurfacePrediction ToPrediction(const MeshRendering& rendering,
+                               const PinholeCamera& full) {
+  LabelImage labels(rendering.camera.height, rendering.camera.width,
+                    static_cast<std::uint16_t>(0));
+  for (int v = 0; v < labels.rows; ++v) {
+    for (int u = 0; u < labels.cols; ++u) {
+      const int triangle = rendering.raster.triangle(v, u);
+      for (const auto& [id, first] : rendering.first_triangle) {
+        if (triangle >= first) labels(v, u) = static_cast<std::uint16_t>(id);
+      }
+    }
+  }
+  SurfacePrediction prediction;
+  const cv::Size size(full.width, full.height);
+  cv::resize(labels, prediction.labels, size, 0, 0, cv::INTER_NEAREST);
+  cv::resize(rendering.raster.depth, prediction.depth, size, 0, 0,
+             cv::INTER_NEAREST);
+  return prediction;
+}
+
+std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
+                                        const Surface& surface, int stride) {
+  std::vector<ModelSample> samples;
+  ForEachPixel(rendering, surface,
+               [&](int v, int u, const Eigen::Vector3i& triangle,
+                   const cv::Vec3f& weights) {
+                 const cv::Vec3f& normal = rendering.normals(v, u);
+                 if (normal[2] == 0) return;
+                 ModelSample sample;
+                 sample.point = Interpolated(surface.mesh().vertices, triangle,
+                                             weights);
+                 sample.normal = ToEigen(normal);
+                 sample.u = u * stride;
+                 sample.v = v * stride;
+                 samples.push_back(sample);
+               });
+  const SkinningIndex& index = surface.skinning_index();
+  const WarpField warp(surface.graph());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, samples.size(), 512),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          ModelSample& sample = samples[i];
+          sample.skinning = index.Skin(sample.point);
+          sample.normal = warp.UnwarpNormal(sample.skinning, sample.normal);
+        }
+      });
+  return samples;
+}
+
+std::vector<ModelSample> RayCastSamples(const Surface& background,
+                                        const PinholeCamera& camera, int stride,
+                                        const RayCastOptions& options) {
+  const Rigid3d camera_from_canonical = MeanRigidMotion(background.graph());
+  const Rigid3f canonical_from_camera =
+      camera_from_canonical.inverse().cast<float>();
+  const cv::Mat_<float> depth =
+      RayCastDepth(background.volume(), camera_from_canonical,
+                   camera.Subsampled(stride), options);
+  const PointMap map = ComputePointMap(depth, camera.Subsampled(stride));
+  std::vector<ModelSample> samples;
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 0; u < depth.cols; ++u) {
+      const cv::Vec3f& normal = map.normals(v, u);
+      if (normal[2] == 0) continue;
+      ModelSample sample;
+      sample.point = canonical_from_camera * ToEigen(map.points(v, u));
+      sample.normal = canonical_from_camera.linear() * ToEigen(normal);
+      sample.u = u * stride;
+      sample.v = v * stride;
+      sample.skinning.count = 1;
+      sample.skinning.weights[0] = 1;
+      samples.push_back(sample);
+    }
+  }
+  return samples;
+}
+
+SceneRendering RenderScene(const SurfaceMap& surfaces,
+                           const PinholeCamera& camera,
+                           const RayCastOptions& options) {
+  SceneRendering scene;
+  scene.map.Clear(camera);
+  scene.labels.create(camera.height, camera.width);
+  scene.labels.setTo(0);
+  for (const auto& [id, surface] : surfaces) {
+    if (surface->is_ray_cast()) {
+      scene.map = RayCast(surface->volume(), MeanRigidMotion(surface->graph()),
+                          camera, options);
+    }
+  }
+  const MeshRendering meshes = RenderMeshes(surfaces, camera);
+  for (const auto& [id, surface] : surfaces) {
+    if (surface->is_ray_cast()) continue;
+    const WarpField warp(surface->graph());
+    const TriangleMesh& mesh = surface->mesh();
+    ForEachPixel(
+        meshes, *surface,
+        [&, id = id](int v, int u, const Eigen::Vector3i& triangle,
+                     const cv::Vec3f& weights) {
+          const float z = meshes.raster.depth(v, u);
+          const float behind = scene.map.points(v, u)[2];
+          if (behind > 0 && behind < z) return;
+          const int corner = triangle[0];
+          scene.map.points(v, u) = ToCv(camera.BackProject<float>(
+              static_cast<float>(u), static_cast<float>(v), z));
+          scene.map.normals(v, u) = ToCv(
+              warp.WarpNormal(surface->mesh_skinning()[corner],
+                              Interpolated(mesh.normals, triangle, weights)));
+          scene.map.color(v, u) = InterpolatedColor(mesh, triangle, weights);
+          scene.labels(v, u) = static_cast<std::uint16_t>(id);
+        });
+  }
+  return scene;
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,64 @@
+#ifndef SPLITFUSION_PIPELINES_MODEL_RENDERING_H_
+#define SPLITFUSION_PIPELINES_MODEL_RENDERING_H_
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "splitfusion/lib/association/correspondence.h"
+#include "splitfusion/lib/render/model_map.h"
+#include "splitfusion/lib/render/rasterizer.h"
+#include "splitfusion/lib/render/ray_caster.h"
+#include "splitfusion/lib/split/surface_splitter.h"
+#include "splitfusion/pipelines/surface.h"
+
+namespace splitfusion {
+
+/// Surfaces by id, the background first.
+using SurfaceMap = std::map<int, std::unique_ptr<Surface>>;
+
+/// All surfaces that are drawn from their meshes, warped and rasterised
+/// together, so that they hide one another.
+struct MeshRendering {
+  PinholeCamera camera;
+  Raster raster;
+  /// Camera frame; of a plane fitted to the rendered depth, which averages the
+  /// noise of a young model that the TSDF's gradient still has.
+  cv::Mat_<cv::Vec3f> normals;
+  std::map<int, int> first_triangle;  ///< Surface id -> its first index.
+};
+
+/// Renders the meshes under the current motions.
+MeshRendering RenderMeshes(const SurfaceMap& surfaces,
+                           const PinholeCamera& camera);
+
+/// Surface id and depth of every pixel of a rendering, resized to `full`.
+SurfacePrediction ToPrediction(const MeshRendering& rendering,
+                               const PinholeCamera& full);
+
+/// The visible points of one surface in a rendering of the full image's every
+/// `stride`-th pixel, with their skinning.
+std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
+                                        const Surface& surface, int stride);
+
+/// The visible points of the rigid background, ray-cast under its current
+/// motion at every `stride`-th pixel of `camera`.
+std::vector<ModelSample> RayCastSamples(const Surface& background,
+                                        const PinholeCamera& camera, int stride,
+                                        const RayCastOptions& options);
+
+/// All surfaces re-united in the camera frame (SplitFusion IV-D): what the
+/// camera sees of the model, and the surface id of every pixel.
+struct SceneRendering {
+  ModelMap map;
+  LabelImage labels;
+};
+
+/// Renders the whole scene under the current motions.
+SceneRendering RenderScene(const SurfaceMap& surfaces,
+                           const PinholeCamera& camera,
+                           const RayCastOptions& options);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_MODEL_RENDERING_H_

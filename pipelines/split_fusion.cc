@@ -1,0 +1,244 @@
+#include "splitfusion/pipelines/split_fusion.h"
+
+#include <algorithm>
+
+#include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/stopwatch.h"
+
+namespace splitfusion {
+namespace {
+
+/// Live pixels with depth of every surface id.
+std::map<int, int> CountPixels(const LiveView& live) {
+  std::map<int, int> counts;
+  for (int v = 0; v < live.depth.rows; ++v) {
+    for (int u = 0; u < live.depth.cols; ++u) {
+      if (live.depth(v, u) > 0) ++counts[live.labels(v, u)];
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+PipelineOptions::PipelineOptions() {
+  background.tsdf.voxel_size = 0.010;
+  background.tsdf.truncation = 0.040;
+  object.tsdf.voxel_size = 0.005;
+  object.tsdf.truncation = 0.030;
+}
+
+void PipelineOptions::Check() const {
+  split.Check();
+  background.Check();
+  object.Check();
+  tracker.Check();
+  solver.Check();
+  ray_cast.Check();
+  CheckOption(render_stride >= 1 && render_stride <= 8, "render_stride",
+              render_stride, "1..8 pixels");
+  for (const auto* stages : {&tracker.rigid, &tracker.non_rigid}) {
+    for (const TrackingStage& stage : *stages) {
+      CheckOption(stage.stride % render_stride == 0, "stride", stage.stride,
+                  "a multiple of render_stride (" +
+                      std::to_string(render_stride) + ")");
+    }
+  }
+  CheckOption(min_tracked_pixels >= 1, "min_tracked_pixels",
+              min_tracked_pixels, ">= 1");
+}
+
+SplitFusion::SplitFusion(const PinholeCamera& camera,
+                         const PipelineOptions& options,
+                         const LabelTable& labels,
+                         std::shared_ptr<Segmenter> segmenter)
+    : camera_(camera),
+      options_(options),
+      segmenter_(std::move(segmenter)),
+      splitter_(camera, labels, options.split),
+      tracker_(options.tracker, options.solver,
+               ParseEnergy(options.terms, BuiltinTerms())) {
+  options_.Check();
+  camera_.Check();
+}
+
+FrameReport SplitFusion::ProcessFrame(const Frame& frame) {
+  const Stopwatch stopwatch;
+  FrameReport report;
+  report.frame = frame.index;
+  report.timestamp = frame.timestamp;
+  report.stem = frame.stem;
+  PredictMotions();
+  Split(frame, &report);
+  if (!surfaces_.empty()) {
+    TrackBackground(&report);
+    TrackObjects(&report);
+    Fuse(&report);
+  }
+  AddNewSurfaces(frame, &report);
+  Record(frame, &report);
+  report.total_seconds = stopwatch.Seconds();
+  return report;
+}
+
+void SplitFusion::PredictMotions() {
+  if (surfaces_.empty()) return;
+  const Rigid3d world_from_camera = WorldFromCamera();
+  const Rigid3d camera_motion = velocities_.at(0);
+  const Rigid3d camera_from_world = camera_motion * world_from_camera.inverse();
+  for (const auto& [id, surface] : surfaces_) {
+    const Rigid3d motion =
+        id == 0 ? camera_motion
+                : camera_from_world * velocities_.at(id) * world_from_camera;
+    ApplyRigidMotion(motion, surface->mutable_graph());
+  }
+}
+
+void SplitFusion::Split(const Frame& frame, FrameReport* report) {
+  Stopwatch stopwatch;
+  live_ = MakeLiveView(camera_, frame.depth, frame.color);
+  rendering_ = RenderMeshes(surfaces_,
+                            camera_.Subsampled(options_.render_stride));
+  report->render_seconds += stopwatch.Restart();
+  if (segmenter_ == nullptr || !options_.split_scene) return;
+  const std::vector<InstanceMask> detections = segmenter_->Segment(frame);
+  report->segment_seconds = stopwatch.Restart();
+  SplitResult split = splitter_.Split(frame, live_.map, detections,
+                                      ToPrediction(rendering_, camera_));
+  live_.labels = split.labels;
+  if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
+  report->decisions = std::move(split.decisions);
+  report->split_seconds = stopwatch.Restart();
+}
+
+void SplitFusion::TrackBackground(FrameReport* report) {
+  Stopwatch stopwatch;
+  Surface& background = *surfaces_.at(0);
+  SurfaceReport surface;
+  surface.id = 0;
+  const std::vector<ModelSample> samples =
+      background.is_ray_cast()
+          ? RayCastSamples(background, camera_, options_.render_stride,
+                           options_.ray_cast)
+          : VisibleSamples(rendering_, background, options_.render_stride);
+  surface.render_seconds = stopwatch.Restart();
+  const Rigid3d predicted = MeanRigidMotion(background.graph());
+  tracker_.Track(samples, live_, 0, background.mutable_graph(), &surface);
+  // A camera motion moves every surface.
+  const Rigid3d correction =
+      MeanRigidMotion(background.graph()) * predicted.inverse();
+  for (const auto& [id, object] : surfaces_) {
+    if (id != 0) ApplyRigidMotion(correction, object->mutable_graph());
+  }
+  report->surfaces.push_back(std::move(surface));
+}
+
+void SplitFusion::TrackObjects(FrameReport* report) {
+  const std::map<int, int> pixels = CountPixels(live_);
+  for (const auto& [id, surface] : surfaces_) {
+    if (id == 0) continue;
+    SurfaceReport surface_report;
+    surface_report.id = id;
+    const auto seen = pixels.find(id);
+    surface_report.pixels = seen == pixels.end() ? 0 : seen->second;
+    if (surface_report.pixels < options_.min_tracked_pixels) {
+      surface_report.state = "unseen";
+    } else {
+      Stopwatch stopwatch;
+      const std::vector<ModelSample> samples =
+          VisibleSamples(rendering_, *surface, options_.render_stride);
+      surface_report.render_seconds = stopwatch.Restart();
+      tracker_.Track(samples, live_, static_cast<std::uint16_t>(id),
+                     surface->mutable_graph(), &surface_report);
+    }
+    report->surfaces.push_back(std::move(surface_report));
+  }
+}
+
+void SplitFusion::Fuse(FrameReport* report) {
+  for (SurfaceReport& tracked : report->surfaces) {
+    if (tracked.state != "tracked") continue;
+    Surface& surface = *surfaces_.at(tracked.id);
+    Stopwatch stopwatch;
+    surface.Fuse(live_);
+    tracked.fuse_seconds = stopwatch.Restart();
+    if (!surface.is_ray_cast()) surface.UpdateMesh(/*grow=*/true);
+    tracked.mesh_seconds = stopwatch.Restart();
+  }
+}
+
+void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
+  const auto add = [&](int id, const std::string& label, SurfaceKind kind) {
+    auto surface = std::make_unique<Surface>(
+        id, label, kind, frame.index,
+        id == 0 ? options_.background : options_.object);
+    if (!surface->Initialize(live_)) return;
+    surfaces_[id] = std::move(surface);
+    SurfaceReport born;
+    born.id = id;
+    born.state = "born";
+    report->surfaces.push_back(std::move(born));
+  };
+  if (surfaces_.empty()) {
+    add(0, "background",
+        options_.deform_background ? SurfaceKind::kNonRigid
+                                   : SurfaceKind::kRigid);
+    // The canonical frame of the background is the world.
+    if (surfaces_.empty()) return;
+  }
+  if (!options_.model_objects) return;
+  const std::map<int, int> pixels = CountPixels(live_);
+  for (const auto& [id, instance] : splitter_.instances()) {
+    const auto seen = pixels.find(id);
+    if (surfaces_.count(id) != 0 || seen == pixels.end() ||
+        seen->second < options_.min_tracked_pixels) {
+      continue;
+    }
+    add(id, instance.class_name,
+        options_.deform_objects ? instance.kind : SurfaceKind::kRigid);
+  }
+}
+
+void SplitFusion::Record(const Frame& frame, FrameReport* report) {
+  const std::map<int, int> pixels = CountPixels(live_);
+  const Rigid3d world_from_camera = WorldFromCamera();
+  trajectory_.push_back({frame.timestamp, world_from_camera});
+  for (SurfaceReport& surface_report : report->surfaces) {
+    const int id = surface_report.id;
+    Surface& surface = *surfaces_.at(id);
+    const auto seen = pixels.find(id);
+    surface_report.pixels = seen == pixels.end() ? 0 : seen->second;
+    surface_report.label = surface.label();
+    surface_report.kind = surface.kind();
+    surface_report.nodes = surface.graph().size();
+    surface_report.vertices = static_cast<int>(surface.mesh().vertices.size());
+    const bool tracked = surface_report.state == "tracked";
+    surface.RecordMotions(frame.index,
+                          tracked || surface_report.state == "born");
+    const Rigid3d motion = MeanRigidMotion(surface.graph());
+    const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
+    const auto last = last_world_from_canonical_.find(id);
+    velocities_[id] = tracked && last != last_world_from_canonical_.end()
+                          ? placed * last->second.inverse()
+                          : Rigid3d::Identity();
+    last_world_from_canonical_[id] = placed;
+    report->render_seconds += surface_report.render_seconds;
+    report->associate_seconds += surface_report.associate_seconds;
+    report->solve_seconds += surface_report.solve_seconds;
+    report->fuse_seconds += surface_report.fuse_seconds;
+    report->mesh_seconds += surface_report.mesh_seconds;
+  }
+}
+
+void SplitFusion::Finish() {
+  for (const auto& [id, surface] : surfaces_) surface->UpdateMesh(false);
+}
+
+Rigid3d SplitFusion::WorldFromCamera() const {
+  const auto background = surfaces_.find(0);
+  if (background == surfaces_.end()) return Rigid3d::Identity();
+  return MeanRigidMotion(background->second->graph()).inverse();
+}
+
+}  // namespace splitfusion

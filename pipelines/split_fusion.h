@@ -1,0 +1,91 @@
+#ifndef SPLITFUSION_PIPELINES_SPLIT_FUSION_H_
+#define SPLITFUSION_PIPELINES_SPLIT_FUSION_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/report/frame_report.h"
+#include "splitfusion/lib/segmentation/segmenter.h"
+#include "splitfusion/lib/sequence/trajectory.h"
+#include "splitfusion/lib/split/surface_splitter.h"
+#include "splitfusion/pipelines/model_rendering.h"
+#include "splitfusion/pipelines/surface.h"
+#include "splitfusion/pipelines/surface_tracker.h"
+
+namespace splitfusion {
+
+/// Options of the whole method. Every one is a flag of `sf_run`.
+struct PipelineOptions {
+  SplitOptions split;
+  SurfaceOptions background;
+  SurfaceOptions object;
+  TrackerOptions tracker = TrackerOptions::Defaults();
+  SolverOptions solver;
+  RayCastOptions ray_cast;
+  /// Eq. 4; syntax of ParseEnergy.
+  std::string terms =
+      "point_to_plane(weight=1,loss=tukey,scale=0.03) arap(weight=8)";
+  int render_stride = 2;  ///< Model maps hold every n-th pixel.
+  bool split_scene = true;      ///< False: one surface holds the whole scene.
+  bool model_objects = true;    ///< False: moving things are only cut out.
+  bool deform_objects = true;   ///< False: moving things are rigid.
+  bool deform_background = false;  ///< True: surface 0 is non-rigid.
+  int min_tracked_pixels = 400;    ///< Fewer live pixels: surface is unseen.
+
+  PipelineOptions();
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// SplitFusion: simultaneous tracking and mapping of rigid and non-rigid
+/// surfaces. Feed frames in order; read surfaces and trajectory at any time.
+class SplitFusion {
+ public:
+  /// `segmenter` may be null: then nothing is split off.
+  /// @throw InputError if an option is out of its range.
+  SplitFusion(const PinholeCamera& camera, const PipelineOptions& options,
+              const LabelTable& labels, std::shared_ptr<Segmenter> segmenter);
+
+  /// One frame of the paper's overview figure: split, track every surface,
+  /// fuse every surface.
+  FrameReport ProcessFrame(const Frame& frame);
+
+  /// Extracts the final meshes of all surfaces.
+  void Finish();
+
+  const SurfaceMap& surfaces() const { return surfaces_; }
+  const Trajectory& trajectory() const { return trajectory_; }
+  const PinholeCamera& camera() const { return camera_; }
+  const PipelineOptions& options() const { return options_; }
+  /// Surface ids of the last frame, HxW.
+  const LabelImage& labels() const { return live_.labels; }
+
+ private:
+  void PredictMotions();
+  void Split(const Frame& frame, FrameReport* report);
+  void TrackBackground(FrameReport* report);
+  void TrackObjects(FrameReport* report);
+  void Fuse(FrameReport* report);
+  void AddNewSurfaces(const Frame& frame, FrameReport* report);
+  void Record(const Frame& frame, FrameReport* report);
+  Rigid3d WorldFromCamera() const;
+
+  PinholeCamera camera_;
+  PipelineOptions options_;
+  std::shared_ptr<Segmenter> segmenter_;
+  SurfaceSplitter splitter_;
+  SurfaceTracker tracker_;
+  SurfaceMap surfaces_;
+  Trajectory trajectory_;
+  LiveView live_;
+  MeshRendering rendering_;
+  /// Rigid motion of every surface over the last frame, in world (camera for
+  /// the background): the constant-velocity prediction.
+  std::map<int, Rigid3d> velocities_;
+  std::map<int, Rigid3d> last_world_from_canonical_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_SPLIT_FUSION_H_

@@ -1,0 +1,99 @@
+#ifndef SPLITFUSION_PIPELINES_SURFACE_H_
+#define SPLITFUSION_PIPELINES_SURFACE_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/association/live_view.h"
+#include "splitfusion/lib/deformation/graph_growth.h"
+#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/segmentation/label_table.h"
+#include "splitfusion/lib/tsdf/tsdf_volume.h"
+#include "splitfusion/lib/tsdf/warped_integration.h"
+
+namespace splitfusion {
+
+/// How one surface is modelled.
+struct SurfaceOptions {
+  TsdfOptions tsdf;
+  GraphOptions graph;
+  /// Observations a voxel needs before it is meshed (weights, about frames at
+  /// close range).
+  double min_mesh_weight = 0.05;
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// One surface of the scene: its volume, its warp field and its history. A
+/// rigid surface has a one-node graph (SplitFusion IV-B) and the same code
+/// path; only the room-sized background is rendered by ray casting instead of
+/// from its mesh.
+class Surface {
+ public:
+  /// `id` 0 is the background. The canonical frame is the camera frame of the
+  /// first fused frame.
+  Surface(int id, std::string label, SurfaceKind kind, int first_frame,
+          const SurfaceOptions& options);
+
+  /// First observation: fills the volume in the camera frame and places the
+  /// graph. Returns whether there is a surface to speak of.
+  bool Initialize(const LiveView& live);
+
+  /// Fuses the live pixels of this surface under the current motions.
+  void Fuse(const LiveView& live);
+
+  /// Extracts the canonical mesh and grows the graph over new parts of it; not
+  /// for the background when it is rigid, see `UpdateMesh(true)`.
+  void UpdateMesh(bool grow);
+
+  /// Appends the current motions to the history.
+  void RecordMotions(int frame, bool tracked);
+
+  /// Mesh vertices under the current motions, camera frame.
+  std::vector<Eigen::Vector3f> WarpedVertices() const;
+
+  int id() const { return id_; }
+  const std::string& label() const { return label_; }
+  void set_label(const std::string& label) { label_ = label; }
+  SurfaceKind kind() const { return kind_; }
+  int first_frame() const { return first_frame_; }
+  bool is_background() const { return id_ == 0; }
+  /// Drawn by ray casting, not from the mesh.
+  bool is_ray_cast() const {
+    return is_background() && kind_ == SurfaceKind::kRigid;
+  }
+
+  const SurfaceOptions& options() const { return options_; }
+  const DeformationGraph& graph() const { return graph_; }
+  DeformationGraph* mutable_graph() { return &graph_; }
+  const SkinningIndex& skinning_index() const { return *index_; }
+  const TsdfVolume& volume() const { return volume_; }
+  const TriangleMesh& mesh() const { return mesh_; }
+  const std::vector<Skinning>& mesh_skinning() const { return mesh_skinning_; }
+  const MotionHistory& history() const { return history_; }
+
+ private:
+  void PlaceGraph(const LiveView& live);
+  void RefreshSkinning();
+
+  int id_;
+  std::string label_;
+  SurfaceKind kind_;
+  int first_frame_;
+  SurfaceOptions options_;
+  TsdfVolume volume_;
+  WarpedIntegrator integrator_;
+  DeformationGraph graph_;
+  std::unique_ptr<SkinningIndex> index_;
+  TriangleMesh mesh_;
+  std::vector<Skinning> mesh_skinning_;
+  MotionHistory history_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_SURFACE_H_

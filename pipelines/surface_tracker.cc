@@ -1,0 +1,207 @@
+#include "splitfusion/pipelines/surface_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/stopwatch.h"
+
+namespace splitfusion {
+namespace {
+
+/// The samples as points of the camera frame under the current warp, carried by
+/// one node: the problem of finding one motion for the whole surface.
+std::vector<ModelSample> WarpedSamples(const std::vector<ModelSample>& samples,
+                                       const DeformationGraph& graph) {
+  const WarpField warp(graph);
+  std::vector<ModelSample> warped = samples;
+  for (ModelSample& sample : warped) {
+    sample.point = warp.WarpPoint(sample.skinning, sample.point);
+    sample.normal = warp.WarpNormal(sample.skinning, sample.normal);
+    sample.skinning = Skinning();
+    sample.skinning.count = 1;
+    sample.skinning.weights[0] = 1;
+  }
+  return warped;
+}
+
+/// Root mean square of the point-to-plane distances, metres.
+double ResidualRms(const std::vector<Correspondence>& correspondences,
+                   const DeformationGraph& graph) {
+  const WarpField warp(graph);
+  double sum = 0;
+  for (const Correspondence& c : correspondences) {
+    const double r = c.warped_normal.dot(
+        warp.WarpPoint(c.model.skinning, c.model.point) - c.target);
+    sum += r * r;
+  }
+  return correspondences.empty() ? 0 : std::sqrt(sum / correspondences.size());
+}
+
+int TotalRounds(const std::vector<TrackingStage>& stages) {
+  int rounds = 0;
+  for (const TrackingStage& stage : stages) rounds += stage.rounds;
+  return rounds;
+}
+
+double Degrees(double radians) { return radians * 180 / M_PI; }
+
+}  // namespace
+
+TrackerOptions TrackerOptions::Defaults() {
+  TrackerOptions options;
+  const double wide = 30 * M_PI / 180;
+  const double tight = 20 * M_PI / 180;
+  options.rigid = {{8, 5, {0.10, wide, 1.31}},
+                   {4, 4, {0.07, 0.5 * (wide + tight), 1.31}},
+                   {2, 4, {0.05, tight, 1.31}}};
+  const double loose = 45 * M_PI / 180;
+  options.non_rigid = {{4, 3, {0.10, loose, 1.31}}, {4, 5, {0.05, loose, 1.31}}};
+  return options;
+}
+
+void TrackerOptions::Check() const {
+  for (const auto* stages : {&rigid, &non_rigid}) {
+    for (const TrackingStage& stage : *stages) {
+      CheckOption(stage.stride >= 1 && stage.stride <= 32, "stride",
+                  stage.stride, "1..32 pixels");
+      CheckOption(stage.rounds >= 0, "rounds", stage.rounds, ">= 0");
+      stage.gates.Check();
+    }
+  }
+  CheckOption(!rigid.empty(), "rigid stages", rigid.size(), "at least one");
+  CheckOption(prior_anneal >= 1, "prior_anneal", prior_anneal, ">= 1");
+  CheckOption(settled >= 0, "settled", settled, ">= 0");
+  CheckOption(min_correspondences >= 6, "min_correspondences",
+              min_correspondences, ">= 6");
+  CheckOption(min_accepted >= 0 && min_accepted <= 1, "min_accepted",
+              min_accepted, "0..1");
+  CheckOption(max_translation > 0, "max_translation", max_translation,
+              "metres > 0");
+  CheckOption(max_rotation > 0, "max_rotation", max_rotation, "radians > 0");
+}
+
+SurfaceTracker::SurfaceTracker(TrackerOptions options, SolverOptions solver,
+                               Energy energy)
+    : options_(std::move(options)),
+      solver_(std::move(solver)),
+      energy_(std::move(energy)) {
+  options_.Check();
+  solver_.Check();
+}
+
+void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
+                           const LiveView& live, std::uint16_t surface,
+                           DeformationGraph* graph,
+                           SurfaceReport* report) const {
+  const DeformationGraph predicted = *graph;
+  TrackRigid(samples, live, surface, graph, report);
+  const Rigid3d motion =
+      MeanRigidMotion(*graph) * MeanRigidMotion(predicted).inverse();
+  report->reason = ReasonForLoss(motion, *report);
+  if (report->reason.empty() && !graph->rigid()) {
+    TrackNonRigid(samples, live, surface, graph, report);
+    report->reason = ReasonForLoss(motion, *report);
+  }
+  report->state = report->reason.empty() ? "tracked" : "lost";
+  if (!report->reason.empty()) *graph = predicted;
+}
+
+void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
+                                const LiveView& live, std::uint16_t surface,
+                                DeformationGraph* graph,
+                                SurfaceReport* report) const {
+  const std::vector<ModelSample> warped = WarpedSamples(samples, *graph);
+  DeformationGraph motion = MakeRigidGraph(Rigid3d::Identity());
+  for (const TrackingStage& stage : options_.rigid) {
+    // A rigid stage of a non-rigid surface only brings it near.
+    if (!graph->rigid() && stage.stride < options_.non_rigid.front().stride) {
+      break;
+    }
+    for (int round = 0; round < stage.rounds; ++round) {
+      if (RunRound(warped, live, surface, stage, "rigid", 1.0, &motion,
+                   report)) {
+        break;
+      }
+    }
+  }
+  ApplyRigidMotion(MeanRigidMotion(motion), graph);
+}
+
+void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
+                                   const LiveView& live, std::uint16_t surface,
+                                   DeformationGraph* graph,
+                                   SurfaceReport* report) const {
+  const int total = TotalRounds(options_.non_rigid);
+  int done = 0;
+  for (const TrackingStage& stage : options_.non_rigid) {
+    for (int round = 0; round < stage.rounds; ++round, ++done) {
+      const double progress = total > 1 ? done / (total - 1.0) : 1.0;
+      const double factor = std::pow(options_.prior_anneal, 1 - progress);
+      const bool settled = RunRound(samples, live, surface, stage, "non_rigid",
+                                    factor, graph, report);
+      if (settled && progress >= 1) return;
+    }
+  }
+}
+
+bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
+                              const LiveView& live, std::uint16_t surface,
+                              const TrackingStage& stage,
+                              const std::string& name, double prior_factor,
+                              DeformationGraph* graph,
+                              SurfaceReport* report) const {
+  Stopwatch stopwatch;
+  TrackingRound round;
+  round.stage = name;
+  round.stride = stage.stride;
+  round.prior_factor = prior_factor;
+  const Association association = Associate(
+      samples, WarpField(*graph), live, surface, stage.stride, stage.gates);
+  round.association = association.counts;
+  report->associate_seconds += stopwatch.Restart();
+  bool settled = true;
+  if (!association.correspondences.empty()) {
+    round.solver = MinimizeWithCeres(
+        {energy_, association.correspondences, prior_factor}, solver_, graph);
+    report->residual_rms = ResidualRms(association.correspondences, *graph);
+    settled = !round.solver.usable ||
+              round.solver.initial_cost - round.solver.final_cost <
+                  options_.settled * round.solver.initial_cost;
+  }
+  report->solve_seconds += stopwatch.Restart();
+  report->rounds.push_back(std::move(round));
+  return settled;
+}
+
+std::string SurfaceTracker::ReasonForLoss(const Rigid3d& motion,
+                                          const SurfaceReport& report) const {
+  if (report.rounds.empty()) return "no model in view";
+  const TrackingRound& last = report.rounds.back();
+  const AssociationCounts& counts = last.association;
+  const int area = last.stride * last.stride;
+  if (counts.accepted * area < options_.min_correspondences * 16) {
+    return "only " + std::to_string(counts.accepted) +
+           " correspondences at stride " + std::to_string(last.stride);
+  }
+  const int comparable = counts.accepted + counts.distance +
+                         counts.normal_angle;
+  if (counts.accepted < options_.min_accepted * comparable) {
+    return "only " + std::to_string(counts.accepted) + " of " +
+           std::to_string(comparable) + " model points fit the depth";
+  }
+  if (!last.solver.usable) return "solver: " + last.solver.message;
+  const double translation = motion.translation().norm();
+  if (translation > options_.max_translation) {
+    return "moved " + std::to_string(translation) + " m from the prediction";
+  }
+  const double rotation = RotationAngle(motion.linear());
+  if (rotation > options_.max_rotation) {
+    return "turned " + std::to_string(Degrees(rotation)) +
+           " degrees from the prediction";
+  }
+  return "";
+}
+
+}  // namespace splitfusion

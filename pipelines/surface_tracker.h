@@ -1,0 +1,82 @@
+#ifndef SPLITFUSION_PIPELINES_SURFACE_TRACKER_H_
+#define SPLITFUSION_PIPELINES_SURFACE_TRACKER_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/association/live_view.h"
+#include "splitfusion/lib/association/projective_association.h"
+#include "splitfusion/lib/energy/solver.h"
+#include "splitfusion/lib/report/frame_report.h"
+
+namespace splitfusion {
+
+/// Rounds (association + minimisation) at one image resolution.
+struct TrackingStage {
+  int stride = 4;  ///< Every stride-th pixel.
+  int rounds = 4;  ///< At most; ends earlier when the cost settles.
+  AssociationGates gates;
+};
+
+/// How one surface is tracked in one frame.
+struct TrackerOptions {
+  std::vector<TrackingStage> rigid;      ///< All nodes share one motion.
+  std::vector<TrackingStage> non_rigid;  ///< Every node moves.
+  /// The priors' weight falls from this factor to 1 over the non-rigid rounds.
+  double prior_anneal = 8;
+  /// A stage ends when the cost changes by less than this fraction.
+  double settled = 2e-3;
+  /// Lost below as many correspondences of the last round ...
+  int min_correspondences = 200;
+  /// ... or below this fraction of the samples that meet live depth of the
+  /// surface ...
+  double min_accepted = 0.25;
+  /// ... or if the surface moved farther than predicted by this much.
+  double max_translation = 0.35;  ///< Metres.
+  double max_rotation = 0.6;      ///< Radians.
+
+  /// Stages that hold for room-sized and person-sized scenes.
+  static TrackerOptions Defaults();
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// Tracks one surface from model to frame (SplitFusion IV-C): alternates
+/// projective association and minimisation of the energy, rigid first, then, if
+/// the graph has more than one node, non-rigid with the prior annealed from
+/// stiff to soft; coarse to fine over the image resolution.
+class SurfaceTracker {
+ public:
+  SurfaceTracker(TrackerOptions options, SolverOptions solver, Energy energy);
+
+  /// Moves the graph, which comes in at the predicted motions, so that the
+  /// samples lie on the live pixels of `surface`. A frame that fails leaves the
+  /// graph as it came; the report's state is then "lost" and says why.
+  void Track(const std::vector<ModelSample>& samples, const LiveView& live,
+             std::uint16_t surface, DeformationGraph* graph,
+             SurfaceReport* report) const;
+
+ private:
+  void TrackRigid(const std::vector<ModelSample>& samples, const LiveView& live,
+                  std::uint16_t surface, DeformationGraph* graph,
+                  SurfaceReport* report) const;
+  void TrackNonRigid(const std::vector<ModelSample>& samples,
+                     const LiveView& live, std::uint16_t surface,
+                     DeformationGraph* graph, SurfaceReport* report) const;
+  bool RunRound(const std::vector<ModelSample>& samples, const LiveView& live,
+                std::uint16_t surface, const TrackingStage& stage,
+                const std::string& name, double prior_factor,
+                DeformationGraph* graph, SurfaceReport* report) const;
+  std::string ReasonForLoss(const Rigid3d& motion,
+                            const SurfaceReport& report) const;
+
+  TrackerOptions options_;
+  SolverOptions solver_;
+  Energy energy_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_SURFACE_TRACKER_H_
