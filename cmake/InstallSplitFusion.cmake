@@ -9,7 +9,8 @@ install(TARGETS splitfusion EXPORT splitfusionTargets
         ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(DIRECTORY lib cost_functions pipelines
         DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/splitfusion"
-        FILES_MATCHING PATTERN "*.h")
+        FILES_MATCHING PATTERN "*.h"
+        PATTERN internal EXCLUDE)
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 install(EXPORT splitfusionTargets NAMESPACE splitfusion::

@@ -1,4 +1,6 @@
 # Test: who may include whom. Data walks one way, see CONTRIBUTING.md.
+# Headers in a folder named internal are not installed: they alone may include
+# OpenVDB and PCL, and no public header includes them.
 #   cmake -D ROOT=<repository> -P layering.cmake
 cmake_minimum_required(VERSION 3.18)
 
@@ -14,6 +16,8 @@ set(level_6 tools examples)
 
 # Within one level.
 set(segmentation_may_include sequence)
+set(tsdf_may_include deformation)
+set(energy_may_include association)
 
 function(breach file text)
   message(SEND_ERROR "${file}: ${text}")
@@ -33,7 +37,9 @@ endfunction()
 
 function(check_own_include file module included)
   module_of("${included}" other)
-  if(NOT DEFINED level_of_${other})
+  if(included MATCHES "/internal/" AND NOT file MATCHES "\\.cc$|/internal/")
+    breach("${file}" "public header includes ${included}, not installed")
+  elseif(NOT DEFINED level_of_${other})
     breach("${file}" "includes ${included}, a module that is not listed")
   elseif(other STREQUAL module OR other IN_LIST ${module}_may_include)
     return()
@@ -45,7 +51,8 @@ endfunction()
 function(check_foreign_include file module included)
   if(included MATCHES "^(gflags|glog)/" AND NOT module STREQUAL "tools")
     breach("${file}" "includes ${included}: only tools/ may")
-  elseif(included MATCHES "^(openvdb|pcl)/" AND file MATCHES "\\.h$")
+  elseif(included MATCHES "^(openvdb|pcl)/" AND file MATCHES "\\.h$" AND
+         NOT file MATCHES "/internal/")
     breach("${file}" "includes ${included}: only .cc files may")
   endif()
 endfunction()

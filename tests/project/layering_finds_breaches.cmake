@@ -33,12 +33,16 @@ expect_breach(lib/report/a.cc "#include \"splitfusion/pipelines/b.h\"\n"
               "report may not include pipelines")
 expect_breach(lib/tsdf/a.h "#include <openvdb/openvdb.h>\n" "only .cc files")
 expect_breach(pipelines/a.h "#include <pcl/point_cloud.h>\n" "only .cc files")
+expect_breach(lib/tsdf/a.h "#include \"splitfusion/lib/tsdf/internal/b.h\"\n"
+              "public header includes")
 expect_breach(lib/base/a.cc "#include <gflags/gflags.h>\n" "only tools/ may")
 expect_breach(pipelines/a.cc "#include <glog/logging.h>\n" "only tools/ may")
 expect_breach(lib/base/a.cc "#include \"error.h\"\n" "write \"splitfusion/")
 expect_breach(lib/news/a.h "\n" "news is not listed")
 
 expect_clean(lib/tsdf/a.cc "#include <openvdb/openvdb.h>\n")
+expect_clean(lib/tsdf/internal/a.h "#include <openvdb/openvdb.h>\n")
+expect_clean(lib/tsdf/a.cc "#include \"splitfusion/lib/tsdf/internal/b.h\"\n")
 expect_clean(lib/segmentation/a.h
              "#include \"splitfusion/lib/sequence/frame.h\"\n")
 expect_clean(pipelines/a.h "#include \"splitfusion/cost_functions/arap.h\"\n")
