@@ -8,6 +8,7 @@ option(SPLITFUSION_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
 # wide vectors use __attribute__((target_clones)) in files free of Eigen.
 foreach(flags "${CMAKE_CXX_FLAGS}" "${CMAKE_CXX_FLAGS_RELEASE}"
         "${CMAKE_CXX_FLAGS_DEBUG}" "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}"
+        "${CMAKE_CXX_FLAGS_MINSIZEREL}" "${CMAKE_CXX_COMPILER_ARG1}"
         "$ENV{CXXFLAGS}")
   if(flags MATCHES "-march=|-mavx|-mfma")
     message(FATAL_ERROR

@@ -1,18 +1,19 @@
 # Packages of Debian 12; tools/install_deps.sh installs them.
 
-# FindOpenVDB.cmake is not in CMake's default path.
-list(APPEND CMAKE_MODULE_PATH "/usr/lib/x86_64-linux-gnu/cmake/OpenVDB"
-     "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+# Outside a package config these make find_dependency() insist.
+set(CMAKE_FIND_PACKAGE_NAME splitfusion)
+set(splitfusion_FIND_REQUIRED TRUE)
+include(LibraryDependencies)
+unset(CMAKE_FIND_PACKAGE_NAME)
+unset(splitfusion_FIND_REQUIRED)
+message(STATUS "Libraries: Ceres ${Ceres_VERSION}, Eigen ${Eigen3_VERSION}, "
+               "OpenCV ${OpenCV_VERSION}, OpenVDB ${OpenVDB_VERSION}, "
+               "PCL ${PCL_VERSION}, TBB ${TBB_VERSION}")
 
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(Ceres 2.1 REQUIRED COMPONENTS SuiteSparse)
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs)
-find_package(PCL 1.12 REQUIRED COMPONENTS common kdtree)
-find_package(OpenVDB 10 REQUIRED)
-find_package(TBB REQUIRED)
-find_package(gflags REQUIRED)
-find_package(glog REQUIRED)
-find_package(nlohmann_json 3.11 REQUIRED)
+if(SPLITFUSION_BUILD_TOOLS)
+  find_package(gflags REQUIRED)
+  find_package(glog REQUIRED)
+endif()
 if(SPLITFUSION_BUILD_TESTS)
   find_package(GTest REQUIRED)
 endif()
@@ -21,7 +22,7 @@ if(SPLITFUSION_BUILD_BENCHMARKS)
 endif()
 
 # OpenVDB and PCL stay out of the public headers. PCL's libraries are taken by
-# name: its imported targets drag VTK and Qt in.
+# name: its list of all of them drags VTK and Qt in.
 function(splitfusion_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC Eigen3::Eigen Ceres::ceres opencv_core opencv_imgproc

@@ -1,1 +1,28 @@
-# Installation and the package config (find_package(splitfusion)).
+# Installation and the package config (find_package(splitfusion)). The tools
+# are installed where they are built, in tools/.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/splitfusion")
+
+install(TARGETS splitfusion EXPORT splitfusionTargets
+        ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(DIRECTORY lib cost_functions pipelines
+        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/splitfusion"
+        FILES_MATCHING PATTERN "*.h"
+        PATTERN internal EXCLUDE)
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+install(EXPORT splitfusionTargets NAMESPACE splitfusion::
+        DESTINATION "${package_dir}")
+configure_package_config_file(
+  cmake/splitfusionConfig.cmake.in
+  "${PROJECT_BINARY_DIR}/splitfusionConfig.cmake"
+  INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file(
+  "${PROJECT_BINARY_DIR}/splitfusionConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/splitfusionConfig.cmake"
+              "${PROJECT_BINARY_DIR}/splitfusionConfigVersion.cmake"
+              cmake/LibraryDependencies.cmake
+        DESTINATION "${package_dir}")

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Installs what building, testing and running need on Debian 12. Run as root, or
+# as a user with sudo. Says what it installs; a second run finds all in place.
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build pkg-config git ca-certificates
+  libceres-dev libeigen3-dev libsuitesparse-dev libopenblas0-pthread
+  libopencv-dev libpcl-dev libopenvdb-dev libtbb-dev
+  libgflags-dev libgoogle-glog-dev nlohmann-json3-dev
+  libgtest-dev libbenchmark-dev doxygen
+)
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  echo "install_deps: needs Debian 12 (apt-get, dpkg-query not found)" >&2
+  exit 2
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  state="$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null ||
+           true)"
+  [[ "$state" == installed ]] || missing+=("$package")
+done
+
+if ((${#missing[@]})); then
+  as_root=()
+  if ((EUID != 0)); then
+    if ! command -v sudo >/dev/null; then
+      echo "install_deps: missing ${missing[*]}; run as root or with sudo" >&2
+      exit 2
+    fi
+    as_root=(sudo)
+  fi
+  echo "install_deps: installing ${missing[*]} and what they need" \
+       "(a few minutes)"
+  log="$(mktemp)"
+  trap 'rm -f "$log"' EXIT
+  if ! { "${as_root[@]}" apt-get update -qq &&
+         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install \
+           -qq -y --no-install-recommends -o DPkg::Lock::Timeout=300 \
+           "${missing[@]}"; } \
+       >"$log" 2>&1 </dev/null; then
+    cat "$log" >&2
+    echo "install_deps: apt-get failed" >&2
+    exit 1
+  fi
+  echo "install_deps: done"
+fi
+
+# Sparse Cholesky takes its dense kernels from the BLAS that the alternatives
+# point to: OpenBLAS, unless somebody chose another one by hand.
+blas="/usr/lib/$(g++ -print-multiarch)"
+for name in libblas.so.3 liblapack.so.3; do
+  if [[ "$(readlink -f "$blas/$name")" != *openblas* ]]; then
+    echo "install_deps: $name is not OpenBLAS (slower); choose it with:" \
+         "update-alternatives --config $name-${blas##*/}" >&2
+  fi
+done
