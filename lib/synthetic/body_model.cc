@@ -78,7 +78,8 @@ std::uint16_t BodyMaterialAt(const Vector3f& p) {
   if (p.z() < 0.085f) return kShoes;
   if (p.z() < 1.0f) return kTrousers;
   if (p.z() < 1.03f) return kDark;
-  return p.z() < 1.475f ? kShirt : HeadMaterial(p);
+  if (p.z() < 1.475f) return kShirt;
+  return HeadMaterial(p);
 }
 
 std::vector<std::vector<int>> VertexNeighbors(const TriangleMesh& mesh) {

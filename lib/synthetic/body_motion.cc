@@ -15,8 +15,8 @@ constexpr double kPi = 3.14159265358979;
 constexpr double kStart = 0.8;        // Where time 0 is in the first quarter.
 constexpr double kWalkSeconds = 2.0;  // Of a quarter of the oval.
 constexpr double kQuarterSeconds = 4.0;
-constexpr double kFootOffset = 0.11;   // From the path, metres.
-constexpr double kAnkleHeight = 0.08;  // Of a planted foot, metres.
+constexpr double kFootOffset = 0.11;    // From the path, metres.
+constexpr double kAnkleHeight = 0.083;  // Of a planted foot, metres.
 
 double SmoothStep(double x) {
   const double c = std::clamp(x, 0.0, 1.0);
@@ -98,7 +98,7 @@ class Path {
   PathPoint At(double quarter) const {
     if (!walks_) return {Vector2d::Zero(), -kPi / 2};
     const double angle = 0.75 * kPi + 0.5 * kPi * quarter;
-    const Vector2d center(0.2, 0.3), radius(0.6, 0.42);
+    const Vector2d center(0.36, 0.36), radius(0.56, 0.4);
     const Vector2d tangent(-radius.x() * std::sin(angle),
                            radius.y() * std::cos(angle));
     // The branch of the arc tangent that is continuous along the path.

@@ -43,7 +43,7 @@ CameraPath::CameraPath(const SyntheticOptions& options)
     : amplitude_(options.camera_motion), seed_(options.seed * 7919u + 5u) {
   switch (options.scene) {
     case SyntheticSceneKind::kPerson:
-      place_ = {0.1, -1.9, 1.25};
+      place_ = {0.1, -2.1, 1.25};
       target_ = {0, 0, 0.95};
       break;
     case SyntheticSceneKind::kSoftObject:

@@ -153,7 +153,7 @@ void AddTable(RoomBuilder* room) {
                               {0.7f, 0.6f, 0.4f}, 0.06f));
   room->Stand(kBox, top.x() - 0.17f, top.y() + 0.16f, top.z(),
               {0.15f, 0.2f, 0.05f}, 0.4f);
-  room->Stand(kCylinder, top.x() + 0.2f, top.y() - 0.17f, top.z(),
+  room->Stand(kCylinder, top.x() + 0.21f, top.y() + 0.2f, top.z(),
               {0.08f, 0.08f, 0.1f});
 }
 
@@ -211,7 +211,7 @@ void AddWallThings(RoomBuilder* room) {
 
 }  // namespace
 
-Vector3f RoomTableTop() { return {-1.05f, -0.05f, 0.66f}; }
+Vector3f RoomTableTop() { return {-0.9f, -0.02f, 0.66f}; }
 
 Room MakeRoom(std::uint32_t seed) {
   RoomBuilder room(seed);
@@ -223,7 +223,7 @@ Room MakeRoom(std::uint32_t seed) {
   AddBookshelf(-1.15f, 1.62f, seed, &room);
   AddSideboard(0.35f, 1.54f, &room);
   AddTable(&room);
-  AddChair(1.5f, 0.35f, 3.6f, &room);
+  AddChair(1.5f, 0.75f, 3.6f, &room);
   AddPlantAndLamp(&room);
   AddWallThings(&room);
   return std::move(room).Finish();

@@ -18,27 +18,24 @@ constexpr float kHeight = 0.45f;  // Metres.
 constexpr float kVoxel = 0.011f;  // Metres.
 constexpr float kBlend = 0.03f;   // Metres.
 
+RoundCone Cone(const Vector3f& start, const Vector3f& end, float start_radius,
+               float end_radius) {
+  return {start, end, start_radius, end_radius, /*bone=*/0};
+}
+
 std::vector<RoundCone> ToyCones() {
+  const float foot = 0.053f;  // Height of its axis: it rests on z = 0.
   std::vector<RoundCone> cones = {
-      {{0, 0, 0.1f}, {0, 0, 0.2f}, 0.105f, 0.09f, 0},
-      {{0.005f, 0, 0.335f}, {0.01f, 0, 0.345f}, 0.088f, 0.088f, 0},
-      {{0.07f, 0, 0.32f}, {0.095f, 0, 0.315f}, 0.035f, 0.03f, 0}};
-  for (const float side : {-1.0f, 1.0f}) {
-    cones.push_back({{0, 0.07f * side, 0.405f},
-                     {0, 0.085f * side, 0.43f},
-                     0.032f,
-                     0.03f,
-                     0});
-    cones.push_back({{0.02f, 0.09f * side, 0.23f},
-                     {0.09f, 0.15f * side, 0.18f},
-                     0.036f,
-                     0.032f,
-                     0});
-    cones.push_back({{0.06f, 0.06f * side, 0.045f},
-                     {0.16f, 0.085f * side, 0.045f},
-                     0.045f,
-                     0.042f,
-                     0});
+      Cone({0, 0, 0.112f}, {0, 0, 0.2f}, 0.105f, 0.09f),
+      Cone({0.005f, 0, 0.335f}, {0.01f, 0, 0.345f}, 0.088f, 0.088f),
+      Cone({0.07f, 0, 0.32f}, {0.095f, 0, 0.315f}, 0.035f, 0.03f)};
+  for (const float y : {-0.01f, 0.01f}) {
+    cones.push_back(
+        Cone({0, 7 * y, 0.405f}, {0, 8.5f * y, 0.43f}, 0.032f, 0.03f));
+    cones.push_back(
+        Cone({0.02f, 9 * y, 0.23f}, {0.09f, 15 * y, 0.18f}, 0.036f, 0.032f));
+    cones.push_back(
+        Cone({0.06f, 6 * y, foot}, {0.16f, 8.5f * y, foot}, 0.045f, 0.042f));
   }
   return cones;
 }
