@@ -53,6 +53,7 @@ class Evidence {
         cut_(cut),
         options_(options) {
     if (!observation.others.empty()) others_ = observation.others(crop);
+    if (!observation.support.empty()) support_ = observation.support(crop);
   }
 
   cv::Mat_<float> Compute(const cv::Mat_<uchar>& reference,
@@ -91,7 +92,7 @@ class Evidence {
     const bool own = surface_ > 0 && label == surface_;
     switch (static_cast<Agreement>(agreement_(v, u))) {
       case Agreement::kSame:
-        if (own) return options_.prediction_weight;
+        if (own) return options_.prediction_weight * OwnShare(v, u);
         return label == 0 ? -options_.background_weight
                           : -options_.prediction_weight;
       case Agreement::kFarther:
@@ -101,11 +102,18 @@ class Evidence {
     }
   }
 
+  /// The projection counts fully where most detections agreed with it.
+  double OwnShare(int v, int u) const {
+    if (support_.empty()) return 1;
+    return std::clamp(2.0 * support_(v, u) - 0.5, -0.25, 1.0);
+  }
+
   const int surface_;
   const bool detected_;
   const LabelImage labels_;
   const cv::Mat_<uchar> agreement_;
   cv::Mat_<uchar> others_;
+  cv::Mat_<float> support_;
   const GraphCutOptions& cut_;
   const PriorOptions& options_;
 };

@@ -43,6 +43,8 @@ struct SurfaceObservation {
   cv::Mat_<uchar> mask;  ///< Detected, 255 inside; empty if missed.
   /// 255 inside the masks of other instances.
   cv::Mat_<uchar> others;
+  /// 0..1: how often recent detections covered the pixel; see MaskSupport.
+  cv::Mat_<float> support;
 };
 
 /// Evidence for the graph cut.

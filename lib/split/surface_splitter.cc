@@ -182,7 +182,8 @@ void SurfaceSplitter::CutSegments(Work* work) const {
   std::vector<Segment>& segments = work->segments;
   tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
     Segment& segment = segments[i];
-    SurfaceObservation observation{segment.surface, segment.mask, {}};
+    SurfaceObservation observation{segment.surface, segment.mask, {}, {}};
+    observation.support = support_.Predict(segment.surface, work->prior.labels);
     observation.others.create(work->frame.depth.size());
     observation.others.setTo(0);
     for (std::size_t j = 0; j < segments.size(); ++j) {
@@ -360,10 +361,10 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
   FinishLabels(&work);
   for (const Segment& segment : work.segments) {
     if (segment.surface == 0 || segment.mask.empty()) continue;
-    registry_.RecordAppearance(
-        segment.surface,
-        ComputeAppearance(frame.color, points,
-                          work.result.labels == segment.surface));
+    const cv::Mat_<uchar> pixels = work.result.labels == segment.surface;
+    registry_.RecordAppearance(segment.surface,
+                               ComputeAppearance(frame.color, points, pixels));
+    support_.Update(segment.surface, pixels, segment.mask, work.prior.labels);
   }
   last_ = {work.result.labels.clone(), frame.depth.clone()};
   last_.depth.setTo(0, work.result.uncertain);

@@ -15,6 +15,7 @@
 #include "splitfusion/lib/split/graph_cut.h"
 #include "splitfusion/lib/split/instance_matcher.h"
 #include "splitfusion/lib/split/instance_registry.h"
+#include "splitfusion/lib/split/mask_support.h"
 #include "splitfusion/lib/split/segment.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 #include "splitfusion/lib/split/surface_prior.h"
@@ -130,6 +131,7 @@ class SurfaceSplitter {
   SplitOptions options_;
   InstanceRegistry registry_;
   BirthQueue births_;
+  MaskSupport support_;
   SurfacePrediction last_;  // Labels and live depth of the frame before.
 };
 
