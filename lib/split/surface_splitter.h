@@ -1,10 +1,9 @@
 #ifndef SPLITFUSION_LIB_SPLIT_SURFACE_SPLITTER_H_
 #define SPLITFUSION_LIB_SPLIT_SURFACE_SPLITTER_H_
 
-#include <cstdint>
 #include <map>
-#include <set>
 #include <opencv2/core.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,51 +11,49 @@
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/sequence/frame.h"
+#include "splitfusion/lib/split/birth_queue.h"
 #include "splitfusion/lib/split/graph_cut.h"
+#include "splitfusion/lib/split/instance_matcher.h"
+#include "splitfusion/lib/split/instance_registry.h"
+#include "splitfusion/lib/split/mask_support.h"
+#include "splitfusion/lib/split/segment.h"
+#include "splitfusion/lib/split/surface_prediction.h"
+#include "splitfusion/lib/split/surface_prior.h"
+#include "splitfusion/lib/split/uncertain_region.h"
 
 namespace splitfusion {
-
-/// Surface id of a pixel; 0 is the background.
-using LabelImage = cv::Mat_<std::uint16_t>;
-
-/// The surfaces of the frame before, rendered into this frame under their
-/// predicted motion. All images are empty in the first frame.
-struct SurfacePrediction {
-  LabelImage labels;      ///< HxW surface ids, 0 = background or nothing.
-  cv::Mat_<float> depth;  ///< HxW z-depth of the rendered surface, metres; 0
-                          ///< where nothing was rendered.
-};
 
 /// How detections become surfaces; defaults hold for TUM-like sequences.
 struct SplitOptions {
   GraphCutOptions graph_cut;
-  double min_score = 0.4;       ///< Detections below are ignored.
-  double max_area = 0.75;       ///< Fraction of the image; larger is ignored.
-  int min_pixels = 600;         ///< With depth; smaller instances are ignored.
-  double min_match_iou = 0.2;   ///< Detection to projected surface.
-  int max_missed_frames = 15;   ///< Kept alive without a detection.
-  int birth_frames = 2;         ///< Detections in as many of the last
-                                ///< 2 x birth_frames frames make a surface.
-  bool rigid_objects = false;   ///< Give rigid classes surfaces of their own.
+  PriorOptions prior;
+  UncertainOptions uncertain;
+  double min_score = 0.4;        ///< A detection below counts only if it covers
+                                 ///< a known surface well.
+  double max_area = 0.75;        ///< Fraction of the image; larger likewise.
+  int min_pixels = 600;          ///< With depth; smaller instances are ignored.
+  double min_match_iou = 0.2;    ///< Detection to projected surface.
+  int max_missed_frames = 15;    ///< Kept alive without a detection.
+  int birth_frames = 2;          ///< Detections in as many of the last
+                                 ///< 2 x birth_frames frames make a surface;
+                                 ///< twice as many if it stands where
+                                 ///< background was mapped.
+  double confident_score = 0.5;  ///< A detection of the first frame makes a
+                                 ///< surface at once from this score on.
+  /// A newcomer is a part of the surface that it touches along this share of
+  /// its border.
+  double min_contact = 0.12;
+  bool rigid_objects = false;     ///< Give rigid classes surfaces of their own.
   std::set<std::string> classes;  ///< Allow-list; empty = all.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
 };
 
-/// A surface the splitter follows.
-struct TrackedInstance {
-  int id = 0;  ///< From 1, in order of birth, never reused.
-  std::string class_name;  ///< Majority of its detections, by score.
-  SurfaceKind kind = SurfaceKind::kNonRigid;
-  int first_frame = 0;
-  int last_detected_frame = 0;
-};
-
 /// One decision, for the report.
 struct SplitDecision {
   std::string action;  ///< "matched", "born", "missed", "dormant", "revived",
-                       ///< "merged", "ignored".
+                       ///< "merged", "pending", "ignored".
   int surface = 0;     ///< Surface id, 0 if none.
   std::string class_name;
   double score = 0;    ///< Of the detection; 0 if none.
@@ -78,24 +75,64 @@ struct SplitResult {
 /// missed detections with the projected surface as prior.
 class SurfaceSplitter {
  public:
+  /// @throw InputError if the camera or an option is out of its range.
   SurfaceSplitter(const PinholeCamera& camera, LabelTable table,
                   SplitOptions options);
 
-  /// Frames must come in order. `detections` as the segmenter gave them.
+  /// Frames must come in order. `detections` as the segmenter gave them. Where
+  /// the prediction is empty, or lacks a surface, the labels and the depth of
+  /// the frame before stand in for it.
+  ///
+  /// @throw InputError if an image does not have the camera's size.
   SplitResult Split(const Frame& frame, const PointMap& points,
                     const std::vector<InstanceMask>& detections,
                     const SurfacePrediction& prediction);
 
   /// Every instance ever born, by id.
   const std::map<int, TrackedInstance>& instances() const {
-    return instances_;
+    return registry_.instances();
   }
 
  private:
+  /// What one call of Split() works on.
+  struct Work {
+    const Frame& frame;
+    const PointMap& points;
+    SurfacePrediction prior;
+    cv::Mat_<uchar> agreement;
+    std::vector<Segment> segments;
+    LabelImage segment_labels;    // 1 + index of the segment.
+    cv::Mat_<uchar> unconfirmed;  // Detections that are no surface.
+    SplitResult result;
+  };
+
+  void CheckSizes(const Frame& frame,
+                  const std::vector<InstanceMask>& detections,
+                  const SurfacePrediction& prediction) const;
+  SurfacePrediction ComposePrior(const SurfacePrediction& prediction) const;
+  bool IsTrackable(const std::string& class_name) const;
+  Trust TrustOf(const InstanceMask& detection) const;
+  void CollectSegments(const std::vector<InstanceMask>& detections,
+                       Work* work) const;
+  void AddMissedSurfaces(Work* work) const;
+  void CutSegments(Work* work) const;
+  void RecordSurface(const Segment& segment, Work* work);
+  void RecordMissed(const Segment& segment, int pixels, Work* work);
+  void SettleNewcomer(int index, Work* work);
+  int FindBody(int index, const cv::Mat_<uchar>& pixels,
+               const Work& work) const;
+  bool IsConfirmed(const Segment& segment, const cv::Mat_<uchar>& pixels,
+                   const Work& work);
+  void MergeCoveredSurfaces(Work* work);
+  void FinishLabels(Work* work) const;
+
   PinholeCamera camera_;
   LabelTable table_;
   SplitOptions options_;
-  std::map<int, TrackedInstance> instances_;
+  InstanceRegistry registry_;
+  BirthQueue births_;
+  MaskSupport support_;
+  SurfacePrediction last_;  // Labels and live depth of the frame before.
 };
 
 }  // namespace splitfusion

@@ -1,0 +1,81 @@
+#ifndef SPLITFUSION_LIB_SPLIT_INSTANCE_REGISTRY_H_
+#define SPLITFUSION_LIB_SPLIT_INSTANCE_REGISTRY_H_
+
+#include <map>
+#include <opencv2/core.hpp>
+#include <set>
+#include <string>
+
+#include "splitfusion/lib/geometry/point_map.h"
+#include "splitfusion/lib/segmentation/label_table.h"
+
+namespace splitfusion {
+
+/// A surface the splitter follows.
+struct TrackedInstance {
+  int id = 0;              ///< From 1, in order of birth, never reused.
+  std::string class_name;  ///< Majority of its detections, by score.
+  SurfaceKind kind = SurfaceKind::kNonRigid;
+  int first_frame = 0;
+  int last_detected_frame = 0;
+  bool dormant = false;  ///< Not followed: out of view or missed too long.
+  int merged_into = 0;   ///< Surface it turned out to be a part of; 0 = none.
+};
+
+/// Looks of an instance, by which it is known when it comes back.
+struct Appearance {
+  cv::Mat histogram;  ///< 8x8x8 BGR, sum 1; empty if never seen.
+  cv::Vec3f center;   ///< Mean point, camera frame, metres.
+};
+
+/// Appearance of the pixels inside of `mask` (HxW, 255 inside).
+Appearance ComputeAppearance(const cv::Mat& color, const PointMap& points,
+                             const cv::Mat_<uchar>& mask);
+
+/// 0..1: intersection of the histograms; 0 if the centres are more than
+/// `max_distance` (metres) apart or one has never been seen.
+double AppearanceSimilarity(const Appearance& a, const Appearance& b,
+                            double max_distance);
+
+/// Who is who: every instance ever born, and what is known of it.
+class InstanceRegistry {
+ public:
+  /// Adds an instance and returns its id.
+  int Create(int frame, const std::string& class_name, SurfaceKind kind);
+
+  /// Records a detection: class vote, last frame; wakes a dormant instance.
+  void RecordDetection(int id, int frame, const std::string& class_name,
+                       double score);
+
+  /// Replaces the looks, once the pixels of a detected instance are known.
+  void RecordAppearance(int id, const Appearance& appearance);
+
+  void SetDormant(int id) { instances_.at(id).dormant = true; }
+
+  /// Counts a frame in which a detection of `body` covered `part` too, and
+  /// returns the count.
+  int CountCovered(int part, int body) { return ++covered_[{part, body}]; }
+
+  /// `part` was never an instance of its own.
+  void Merge(int part, int body);
+
+  /// The dormant instance of this kind that looks most like `appearance`; 0
+  /// if none is alike.
+  int FindDormant(const Appearance& appearance, SurfaceKind kind) const;
+
+  /// Ids that detections may be matched to: all but merged ones.
+  std::set<int> Matchable() const;
+
+  const TrackedInstance& at(int id) const { return instances_.at(id); }
+  const std::map<int, TrackedInstance>& instances() const { return instances_; }
+
+ private:
+  std::map<int, TrackedInstance> instances_;
+  std::map<int, std::map<std::string, double>> votes_;  // [id][class]
+  std::map<int, Appearance> appearances_;
+  std::map<std::pair<int, int>, int> covered_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SPLIT_INSTANCE_REGISTRY_H_

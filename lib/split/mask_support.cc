@@ -1,0 +1,66 @@
+#include "splitfusion/lib/split/mask_support.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace splitfusion {
+namespace {
+
+constexpr double kNewest = 0.25;  // Weight of the newest detection.
+constexpr int kReach = 7;         // Pixels over which the support is spread.
+
+cv::Point2d Center(const cv::Mat& mask) {
+  const cv::Moments moments = cv::moments(mask, /*binaryImage=*/true);
+  if (moments.m00 <= 0) return {0, 0};
+  return {moments.m10 / moments.m00, moments.m01 / moments.m00};
+}
+
+template <typename T>
+cv::Mat_<T> Shifted(const cv::Mat_<T>& image, const cv::Point2d& shift) {
+  const cv::Mat_<double> motion =
+      (cv::Mat_<double>(2, 3) << 1, 0, shift.x, 0, 1, shift.y);
+  cv::Mat_<T> shifted;
+  cv::warpAffine(image, shifted, motion, image.size(), cv::INTER_NEAREST);
+  return shifted;
+}
+
+}  // namespace
+
+cv::Mat_<float> MaskSupport::Predict(int surface,
+                                     const LabelImage& predicted_labels) const {
+  cv::Mat_<float> result(predicted_labels.size(), 1.0f);
+  const auto found = states_.find(surface);
+  const cv::Mat predicted = predicted_labels == surface;
+  if (found == states_.end() || cv::countNonZero(predicted) == 0) {
+    return result;
+  }
+  const State& state = found->second;
+  const cv::Point2d shift = Center(predicted) - Center(state.pixels);
+  cv::Mat_<float> inside;
+  state.pixels.convertTo(inside, CV_32F, 1.0 / 255);
+  inside = Shifted(inside, shift);
+  cv::Mat_<float> support = Shifted(state.support, shift);
+  const cv::Size window(2 * kReach + 1, 2 * kReach + 1);
+  cv::blur(inside, inside, window);
+  cv::blur(support, support, window);
+  for (int v = 0; v < result.rows; ++v) {
+    for (int u = 0; u < result.cols; ++u) {
+      if (inside(v, u) > 0.01f) result(v, u) = support(v, u) / inside(v, u);
+    }
+  }
+  return result;
+}
+
+void MaskSupport::Update(int surface, const cv::Mat_<uchar>& pixels,
+                         const cv::Mat_<uchar>& mask,
+                         const LabelImage& predicted_labels) {
+  cv::Mat_<float> covered;
+  mask.convertTo(covered, CV_32F, 1.0 / 255);
+  if (states_.count(surface) > 0) {
+    covered =
+        (1 - kNewest) * Predict(surface, predicted_labels) + kNewest * covered;
+  }
+  covered.setTo(0, ~pixels);
+  states_[surface] = {pixels.clone(), covered};
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,22 @@
+#ifndef SPLITFUSION_LIB_SPLIT_SURFACE_PREDICTION_H_
+#define SPLITFUSION_LIB_SPLIT_SURFACE_PREDICTION_H_
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+
+namespace splitfusion {
+
+/// Surface id of a pixel; 0 is the background.
+using LabelImage = cv::Mat_<std::uint16_t>;
+
+/// The surfaces of the frame before, rendered into this frame under their
+/// predicted motion. All images are empty in the first frame.
+struct SurfacePrediction {
+  LabelImage labels;      ///< HxW surface ids, 0 = background or nothing.
+  cv::Mat_<float> depth;  ///< HxW z-depth of the rendered surface, metres; 0
+                          ///< where nothing was rendered.
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SPLIT_SURFACE_PREDICTION_H_

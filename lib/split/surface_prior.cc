@@ -1,0 +1,186 @@
+#include "splitfusion/lib/split/surface_prior.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/point_map.h"
+
+namespace splitfusion {
+namespace {
+
+Agreement Compare(float live, float predicted, double gate) {
+  if (live <= 0 || predicted <= 0) return Agreement::kUnknown;
+  if (live < predicted - gate) return Agreement::kNearer;
+  return live > predicted + gate ? Agreement::kFarther : Agreement::kSame;
+}
+
+/// Distance to the border of a mask, pixels: positive inside.
+cv::Mat_<float> SignedDistance(const cv::Mat_<uchar>& mask) {
+  cv::Mat inside, outside;
+  cv::distanceTransform(mask, inside, cv::DIST_L2, 3);
+  cv::distanceTransform(~mask, outside, cv::DIST_L2, 3);
+  return inside - outside;
+}
+
+cv::Mat Disk(int radius) {
+  return cv::getStructuringElement(cv::MORPH_ELLIPSE,
+                                   cv::Size(2 * radius + 1, 2 * radius + 1));
+}
+
+/// Bounding box grown by `margin` pixels, within the image.
+cv::Rect GrownBox(const cv::Mat& mask, int margin) {
+  const cv::Rect box = cv::boundingRect(mask);
+  if (box.area() == 0) return {};
+  const cv::Rect grown(box.x - margin, box.y - margin, box.width + 2 * margin,
+                       box.height + 2 * margin);
+  return grown & cv::Rect(0, 0, mask.cols, mask.rows);
+}
+
+/// Evidence of one crop, pixel by pixel.
+class Evidence {
+ public:
+  Evidence(const SurfaceObservation& observation, const cv::Rect& crop,
+           const LabelImage& labels, const cv::Mat_<uchar>& agreement,
+           const GraphCutOptions& cut, const PriorOptions& options)
+      : surface_(observation.surface),
+        detected_(!observation.mask.empty()),
+        labels_(labels(crop)),
+        agreement_(agreement(crop)),
+        cut_(cut),
+        options_(options) {
+    if (!observation.others.empty()) others_ = observation.others(crop);
+    if (!observation.support.empty()) support_ = observation.support(crop);
+  }
+
+  cv::Mat_<float> Compute(const cv::Mat_<uchar>& reference,
+                          const cv::Mat_<uchar>& possible) const {
+    const cv::Mat_<float> distance = SignedDistance(reference);
+    const cv::Mat_<float> reach = SignedDistance(possible);
+    cv::Mat_<float> evidence(reference.size());
+    for (int v = 0; v < evidence.rows; ++v) {
+      for (int u = 0; u < evidence.cols; ++u) {
+        const bool far_out = reach(v, u) < -cut_.outer_dilation;
+        evidence(v, u) =
+            far_out ? kSurelyBackground
+                    : static_cast<float>(OfMask(distance(v, u)) +
+                                         OfOthers(v, u) + OfPrediction(v, u));
+      }
+    }
+    return evidence;
+  }
+
+ private:
+  double OfMask(float distance) const {
+    const double inside =
+        detected_ ? options_.mask_weight : options_.missed_weight;
+    if (distance > 0) {
+      return inside * std::min(1.0, distance / double(cut_.core_erosion));
+    }
+    return inside * std::max(-1.0, distance / double(cut_.outer_dilation));
+  }
+
+  double OfOthers(int v, int u) const {
+    return !others_.empty() && others_(v, u) ? -options_.mask_weight : 0.0;
+  }
+
+  double OfPrediction(int v, int u) const {
+    const int label = labels_(v, u);
+    const bool own = surface_ > 0 && label == surface_;
+    switch (static_cast<Agreement>(agreement_(v, u))) {
+      case Agreement::kSame:
+        if (own) return options_.prediction_weight * OwnShare(v, u);
+        return label == 0 ? -options_.background_weight
+                          : -options_.prediction_weight;
+      case Agreement::kFarther:
+        return own ? -options_.prediction_weight : 0.0;
+      default:
+        return 0.0;
+    }
+  }
+
+  /// The projection counts fully where most detections agreed with it.
+  double OwnShare(int v, int u) const {
+    if (support_.empty()) return 1;
+    return std::clamp(2.0 * support_(v, u) - 0.5, -0.25, 1.0);
+  }
+
+  const int surface_;
+  const bool detected_;
+  const LabelImage labels_;
+  const cv::Mat_<uchar> agreement_;
+  cv::Mat_<uchar> others_;
+  cv::Mat_<float> support_;
+  const GraphCutOptions& cut_;
+  const PriorOptions& options_;
+};
+
+}  // namespace
+
+void PriorOptions::Check() const {
+  CheckOption(mask_weight > 0 && mask_weight <= 4, "mask_weight", mask_weight,
+              "0..4, not 0");
+  CheckOption(prediction_weight >= 0 && prediction_weight <= 4,
+              "prediction_weight", prediction_weight, "0..4");
+  CheckOption(background_weight >= 0 && background_weight <= 4,
+              "background_weight", background_weight, "0..4");
+  CheckOption(missed_weight >= 0 && missed_weight <= 4, "missed_weight",
+              missed_weight, "0..4");
+  CheckOption(surface_gate > 0, "surface_gate", surface_gate,
+              "positive metres");
+  CheckOption(background_gate > 0, "background_gate", background_gate,
+              "positive metres");
+}
+
+cv::Mat_<uchar> CompareDepth(const cv::Mat& depth,
+                             const SurfacePrediction& prediction,
+                             const PriorOptions& options) {
+  cv::Mat_<uchar> agreement(depth.size());
+  tbb::parallel_for(0, depth.rows, [&](int v) {
+    for (int u = 0; u < depth.cols; ++u) {
+      const float live = depth.at<float>(v, u);
+      const double gate =
+          3 * DepthSigma(live) + (prediction.labels(v, u) > 0
+                                      ? options.surface_gate
+                                      : options.background_gate);
+      agreement(v, u) =
+          static_cast<uchar>(Compare(live, prediction.depth(v, u), gate));
+    }
+  });
+  return agreement;
+}
+
+cv::Mat_<uchar> AgreeingPixels(int surface, const LabelImage& predicted_labels,
+                               const cv::Mat_<uchar>& agreement) {
+  return (predicted_labels == surface) &
+         (agreement == static_cast<int>(Agreement::kSame));
+}
+
+SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,
+                               const LabelImage& predicted_labels,
+                               const cv::Mat_<uchar>& agreement,
+                               const GraphCutOptions& cut,
+                               const PriorOptions& options) {
+  const cv::Mat_<uchar> predicted =
+      observation.surface > 0
+          ? AgreeingPixels(observation.surface, predicted_labels, agreement)
+          : cv::Mat_<uchar>(agreement.size(), uchar(0));
+  const bool detected = !observation.mask.empty();
+  const cv::Mat_<uchar> possible =
+      detected ? cv::Mat_<uchar>(observation.mask | predicted) : predicted;
+  SurfaceEvidence result;
+  result.crop = GrownBox(possible, cut.outer_dilation + 2);
+  if (result.crop.area() == 0) return result;
+  cv::Mat reference =
+      (detected ? observation.mask : predicted)(result.crop).clone();
+  cv::morphologyEx(reference, reference, cv::MORPH_CLOSE, Disk(2));
+  const Evidence evidence(observation, result.crop, predicted_labels, agreement,
+                          cut, options);
+  result.evidence = evidence.Compute(reference, possible(result.crop));
+  return result;
+}
+
+}  // namespace splitfusion

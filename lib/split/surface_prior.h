@@ -1,0 +1,72 @@
+#ifndef SPLITFUSION_LIB_SPLIT_SURFACE_PRIOR_H_
+#define SPLITFUSION_LIB_SPLIT_SURFACE_PRIOR_H_
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+
+#include "splitfusion/lib/split/graph_cut.h"
+#include "splitfusion/lib/split/surface_prediction.h"
+
+namespace splitfusion {
+
+/// What the live depth says about the predicted surface at a pixel.
+enum class Agreement : std::uint8_t {
+  kUnknown = 0,  ///< No live depth or nothing predicted.
+  kSame = 1,     ///< Live and predicted depth agree within the gate.
+  kNearer = 2,   ///< The live point is in front of the predicted surface.
+  kFarther = 3,  ///< The live point is behind the predicted surface.
+};
+
+/// How strongly each observation speaks for or against a surface, in units of
+/// the strongest edge of the graph cut, per pixel.
+struct PriorOptions {
+  double mask_weight = 0.25;        ///< Core of the detection's mask.
+  double prediction_weight = 0.5;   ///< Agreement with the predicted surface.
+  double background_weight = 0.15;  ///< Agreement with the background.
+  double missed_weight = 0.1;     ///< Outside of the prediction, not detected.
+  double surface_gate = 0.08;     ///< Metres, beside three times the noise.
+  double background_gate = 0.03;  ///< Metres, beside three times the noise.
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// Compares live and predicted depth: HxW 8UC1 of Agreement. `depth`: HxW
+/// 32FC1, metres.
+cv::Mat_<uchar> CompareDepth(const cv::Mat& depth,
+                             const SurfacePrediction& prediction,
+                             const PriorOptions& options);
+
+/// The observations about one surface in one frame; images are of frame size.
+struct SurfaceObservation {
+  int surface = 0;       ///< Id in the predicted labels; 0 if it is new.
+  cv::Mat_<uchar> mask;  ///< Detected, 255 inside; empty if missed.
+  /// 255 inside the masks of other instances.
+  cv::Mat_<uchar> others;
+  /// 0..1: how often recent detections covered the pixel; see MaskSupport.
+  cv::Mat_<float> support;
+};
+
+/// Evidence for the graph cut.
+struct SurfaceEvidence {
+  cv::Rect crop;             ///< Where the surface can be; may be empty.
+  cv::Mat_<float> evidence;  ///< Size of the crop; > 0 for the surface.
+};
+
+/// Gathers the evidence for one surface: the depth inside or outside of the
+/// detector's mask, and where the live depth agrees with the predicted surface,
+/// with another one or with the background. Beyond the dilated mask and
+/// prediction the background is certain.
+SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,
+                               const LabelImage& predicted_labels,
+                               const cv::Mat_<uchar>& agreement,
+                               const GraphCutOptions& cut,
+                               const PriorOptions& options);
+
+/// Pixels predicted as `surface` where the live depth agrees, 255.
+cv::Mat_<uchar> AgreeingPixels(int surface, const LabelImage& predicted_labels,
+                               const cv::Mat_<uchar>& agreement);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SPLIT_SURFACE_PRIOR_H_

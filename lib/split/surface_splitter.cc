@@ -1,0 +1,374 @@
+#include "splitfusion/lib/split/surface_splitter.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/split/surface_contact.h"
+
+namespace splitfusion {
+namespace {
+
+/// Frames in which a detection covers a second surface before the two are
+/// taken for one.
+constexpr int kCoveredFrames = 3;
+
+SplitDecision MakeDecision(const std::string& action, const Segment& segment) {
+  return {action, segment.surface, segment.class_name, segment.score,
+          segment.iou};
+}
+
+void CheckSize(const std::string& name, const cv::Mat& image,
+               const PinholeCamera& camera) {
+  if (image.cols == camera.width && image.rows == camera.height) return;
+  throw InputError(name + " is " + std::to_string(image.cols) + "x" +
+                   std::to_string(image.rows) + ": expected " +
+                   std::to_string(camera.width) + "x" +
+                   std::to_string(camera.height));
+}
+
+cv::Mat_<uchar> PixelsOf(int index, const LabelImage& segment_labels) {
+  return segment_labels == index + 1;
+}
+
+int CountWithDepth(const cv::Mat& pixels, const cv::Mat& depth) {
+  return cv::countNonZero(pixels & (depth > 0));
+}
+
+}  // namespace
+
+void SplitOptions::Check() const {
+  graph_cut.Check();
+  prior.Check();
+  uncertain.Check();
+  CheckOption(min_score >= 0 && min_score <= 1, "min_score", min_score, "0..1");
+  CheckOption(max_area > 0 && max_area <= 1, "max_area", max_area,
+              "a fraction of the image in 0..1");
+  CheckOption(min_pixels >= 1, "min_pixels", min_pixels, "at least 1 pixel");
+  CheckOption(min_match_iou > 0 && min_match_iou <= 1, "min_match_iou",
+              min_match_iou, "0..1");
+  CheckOption(max_missed_frames >= 0, "max_missed_frames", max_missed_frames,
+              "a number of frames >= 0");
+  CheckOption(birth_frames >= 1, "birth_frames", birth_frames,
+              "at least 1 frame");
+  CheckOption(confident_score >= 0 && confident_score <= 1, "confident_score",
+              confident_score, "0..1");
+  CheckOption(min_contact > 0 && min_contact <= 1, "min_contact", min_contact,
+              "a share in 0..1");
+}
+
+SurfaceSplitter::SurfaceSplitter(const PinholeCamera& camera, LabelTable table,
+                                 SplitOptions options)
+    : camera_(camera),
+      table_(std::move(table)),
+      options_(std::move(options)),
+      births_(4 * options_.birth_frames) {
+  camera_.Check();
+  options_.Check();
+}
+
+void SurfaceSplitter::CheckSizes(const Frame& frame,
+                                 const std::vector<InstanceMask>& detections,
+                                 const SurfacePrediction& prediction) const {
+  CheckSize("colour image", frame.color, camera_);
+  CheckSize("depth image", frame.depth, camera_);
+  for (const InstanceMask& detection : detections) {
+    CheckSize("mask of '" + detection.class_name + "'", detection.mask,
+              camera_);
+  }
+  if (prediction.labels.empty()) return;
+  CheckSize("predicted labels", prediction.labels, camera_);
+  CheckSize("predicted depth", prediction.depth, camera_);
+}
+
+SurfacePrediction SurfaceSplitter::ComposePrior(
+    const SurfacePrediction& prediction) const {
+  const cv::Size size(camera_.width, camera_.height);
+  if (prediction.labels.empty()) {
+    if (!last_.labels.empty()) return last_;
+    return {LabelImage(size, 0), cv::Mat_<float>(size, 0.0f)};
+  }
+  SurfacePrediction prior{prediction.labels.clone(), prediction.depth.clone()};
+  if (last_.labels.empty()) return prior;
+  for (const int id : registry_.Matchable()) {
+    if (registry_.at(id).dormant) continue;
+    if (cv::countNonZero(prediction.labels == id) > 0) continue;
+    const cv::Mat gap = (last_.labels == id) & (prediction.labels == 0);
+    last_.labels.copyTo(prior.labels, gap);
+    last_.depth.copyTo(prior.depth, gap);
+  }
+  return prior;
+}
+
+bool SurfaceSplitter::IsTrackable(const std::string& class_name) const {
+  return options_.rigid_objects ||
+         table_.Kind(class_name) == SurfaceKind::kNonRigid;
+}
+
+Trust SurfaceSplitter::TrustOf(const InstanceMask& detection) const {
+  const double area =
+      double(cv::countNonZero(detection.mask)) / detection.mask.total();
+  const bool full = detection.score >= options_.min_score &&
+                    area <= options_.max_area &&
+                    IsTrackable(detection.class_name);
+  return full ? Trust::kFull : Trust::kMatched;
+}
+
+void SurfaceSplitter::CollectSegments(
+    const std::vector<InstanceMask>& detections, Work* work) const {
+  std::vector<Candidate> candidates;
+  std::vector<const InstanceMask*> sources;
+  for (const InstanceMask& detection : detections) {
+    if (!options_.classes.empty() &&
+        options_.classes.count(detection.class_name) == 0) {
+      continue;
+    }
+    candidates.push_back({detection.mask, TrustOf(detection)});
+    sources.push_back(&detection);
+  }
+  MatchOptions match_options;
+  match_options.min_iou = options_.min_match_iou;
+  const std::vector<Match> matches =
+      MatchInstances(candidates, work->prior.labels, work->agreement,
+                     registry_.Matchable(), match_options);
+  std::map<int, std::size_t> segment_of;  // By surface.
+  // Pieces last, so that a segment begins with its main detection.
+  for (const bool piece : {false, true}) {
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      if (matches[i].piece != piece) continue;
+      Segment segment;
+      segment.surface = matches[i].surface;
+      segment.mask = candidates[i].mask.clone();
+      segment.class_name = sources[i]->class_name;
+      segment.score = sources[i]->score;
+      segment.iou = matches[i].iou;
+      if (segment.surface == 0 && candidates[i].trust != Trust::kFull) {
+        work->result.decisions.push_back(MakeDecision("ignored", segment));
+        if (IsTrackable(segment.class_name) &&
+            segment.score < options_.min_score) {
+          work->unconfirmed |= segment.mask;
+        }
+        continue;
+      }
+      const auto known = segment_of.find(segment.surface);
+      if (segment.surface > 0 && known != segment_of.end()) {
+        work->segments[known->second].mask |= segment.mask;
+        work->result.decisions.push_back(MakeDecision("merged", segment));
+        continue;
+      }
+      segment_of[segment.surface] = work->segments.size();
+      work->segments.push_back(segment);
+    }
+  }
+}
+
+void SurfaceSplitter::AddMissedSurfaces(Work* work) const {
+  std::set<int> missed;
+  for (const int id : registry_.Matchable()) {
+    if (!registry_.at(id).dormant) missed.insert(id);
+  }
+  for (const Segment& segment : work->segments) missed.erase(segment.surface);
+  for (const int id : missed) {
+    Segment segment;
+    segment.surface = id;
+    segment.class_name = registry_.at(id).class_name;
+    work->segments.push_back(segment);
+  }
+}
+
+void SurfaceSplitter::CutSegments(Work* work) const {
+  std::vector<Segment>& segments = work->segments;
+  tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
+    Segment& segment = segments[i];
+    SurfaceObservation observation{segment.surface, segment.mask, {}, {}};
+    observation.support = support_.Predict(segment.surface, work->prior.labels);
+    observation.others.create(work->frame.depth.size());
+    observation.others.setTo(0);
+    for (std::size_t j = 0; j < segments.size(); ++j) {
+      if (j != i && !segments[j].mask.empty()) {
+        observation.others |= segments[j].mask;
+      }
+    }
+    segment.evidence =
+        GatherEvidence(observation, work->prior.labels, work->agreement,
+                       options_.graph_cut, options_.prior);
+    if (segment.evidence.crop.area() == 0) return;
+    segment.foreground =
+        CutForeground(work->points, work->frame.color, segment.evidence.crop,
+                      segment.evidence.evidence, options_.graph_cut);
+  });
+}
+
+void SurfaceSplitter::RecordSurface(const Segment& segment, Work* work) {
+  const bool revived = registry_.at(segment.surface).dormant;
+  registry_.RecordDetection(segment.surface, work->frame.index,
+                            segment.class_name, segment.score);
+  work->result.decisions.push_back(
+      MakeDecision(revived ? "revived" : "matched", segment));
+}
+
+void SurfaceSplitter::RecordMissed(const Segment& segment, int pixels,
+                                   Work* work) {
+  const int missed =
+      work->frame.index - registry_.at(segment.surface).last_detected_frame;
+  const bool gone =
+      missed > options_.max_missed_frames || pixels < options_.min_pixels / 4;
+  if (gone) registry_.SetDormant(segment.surface);
+  work->result.decisions.push_back(
+      MakeDecision(gone ? "dormant" : "missed", segment));
+}
+
+int SurfaceSplitter::FindBody(int index, const cv::Mat_<uchar>& pixels,
+                              const Work& work) const {
+  int best = 0;
+  double best_share = options_.min_contact;
+  for (int i = 0; i < static_cast<int>(work.segments.size()); ++i) {
+    const int id = work.segments[i].surface;
+    if (i == index || id == 0) continue;
+    if (registry_.at(id).class_name != work.segments[index].class_name) {
+      continue;
+    }
+    const double share =
+        ContactShare(work.points, pixels, PixelsOf(i, work.segment_labels));
+    if (share < best_share) continue;
+    best_share = share;
+    best = id;
+  }
+  return best;
+}
+
+bool SurfaceSplitter::IsConfirmed(const Segment& segment,
+                                  const cv::Mat_<uchar>& pixels,
+                                  const Work& work) {
+  const int hits = births_.Add(work.frame.index, segment.mask);
+  if (last_.labels.empty() && segment.score >= options_.confident_score) {
+    return true;
+  }
+  const cv::Mat mapped = pixels & (work.prior.labels == 0) &
+                         (work.agreement == static_cast<int>(Agreement::kSame));
+  const bool was_background =
+      2 * cv::countNonZero(mapped) > cv::countNonZero(pixels);
+  return hits >= options_.birth_frames * (was_background ? 2 : 1);
+}
+
+void SurfaceSplitter::SettleNewcomer(int index, Work* work) {
+  Segment& segment = work->segments[index];
+  const cv::Mat_<uchar> pixels = PixelsOf(index, work->segment_labels);
+  if (const int body = FindBody(index, pixels, *work)) {
+    segment.surface = body;
+    work->result.decisions.push_back(MakeDecision("merged", segment));
+    return;
+  }
+  const bool large =
+      CountWithDepth(pixels, work->frame.depth) >= options_.min_pixels;
+  if (!large || !IsConfirmed(segment, pixels, *work)) {
+    work->unconfirmed |= segment.mask | pixels;
+    work->result.decisions.push_back(
+        MakeDecision(large ? "pending" : "ignored", segment));
+    return;
+  }
+  births_.Remove(segment.mask);
+  const SurfaceKind kind = table_.Kind(segment.class_name);
+  const int known = registry_.FindDormant(
+      ComputeAppearance(work->frame.color, work->points, pixels), kind);
+  segment.surface =
+      known > 0 ? known
+                : registry_.Create(work->frame.index, segment.class_name, kind);
+  registry_.RecordDetection(segment.surface, work->frame.index,
+                            segment.class_name, segment.score);
+  work->result.decisions.push_back(
+      MakeDecision(known > 0 ? "revived" : "born", segment));
+}
+
+void SurfaceSplitter::MergeCoveredSurfaces(Work* work) {
+  for (Segment& part : work->segments) {
+    if (part.surface == 0 || !part.mask.empty()) continue;
+    for (const Segment& body : work->segments) {
+      if (body.mask.empty() || body.surface == 0 ||
+          registry_.at(body.surface).class_name != part.class_name) {
+        continue;
+      }
+      const Overlap overlap = ComputeOverlap(
+          body.mask, part.surface, work->prior.labels, work->agreement);
+      if (overlap.covered * overlap.agreement < MatchOptions().min_contained ||
+          registry_.CountCovered(part.surface, body.surface) < kCoveredFrames) {
+        continue;
+      }
+      registry_.Merge(part.surface, body.surface);
+      work->result.decisions.push_back(MakeDecision("merged", part));
+      part.surface = body.surface;
+      break;
+    }
+  }
+}
+
+void SurfaceSplitter::FinishLabels(Work* work) const {
+  std::vector<std::uint16_t> id_of(work->segments.size() + 1, 0);
+  UncertainInput input;
+  input.detected.create(work->frame.depth.size());
+  input.detected.setTo(0);
+  for (std::size_t i = 0; i < work->segments.size(); ++i) {
+    const Segment& segment = work->segments[i];
+    const int id = segment.surface;
+    if (id > 0 && !registry_.at(id).dormant) {
+      id_of[i + 1] = static_cast<std::uint16_t>(id);
+    }
+    if (!segment.mask.empty()) input.detected |= segment.mask;
+  }
+  work->result.labels.create(work->frame.depth.size());
+  std::transform(work->segment_labels.begin(), work->segment_labels.end(),
+                 work->result.labels.begin(),
+                 [&](std::uint16_t segment) { return id_of[segment]; });
+  input.labels = work->result.labels;
+  input.unconfirmed = work->unconfirmed;
+  input.predicted_labels = work->prior.labels;
+  input.agreement = work->agreement;
+  input.depth = work->frame.depth;
+  work->result.uncertain = DrawUncertainRegion(input, options_.uncertain);
+}
+
+SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
+                                   const std::vector<InstanceMask>& detections,
+                                   const SurfacePrediction& prediction) {
+  CheckSizes(frame, detections, prediction);
+  Work work{frame, points, ComposePrior(prediction), {}, {}, {}, {}, {}};
+  work.agreement = CompareDepth(frame.depth, work.prior, options_.prior);
+  work.unconfirmed.create(frame.depth.size());
+  work.unconfirmed.setTo(0);
+  CollectSegments(detections, &work);
+  AddMissedSurfaces(&work);
+  CutSegments(&work);
+  work.segment_labels =
+      ComposeSegments(work.segments, work.prior.labels, frame.depth);
+  const int known = static_cast<int>(work.segments.size());
+  for (int i = 0; i < known; ++i) {
+    const Segment& segment = work.segments[i];
+    if (segment.surface == 0) continue;
+    if (!segment.mask.empty()) {
+      RecordSurface(segment, &work);
+    } else {
+      RecordMissed(
+          segment,
+          CountWithDepth(PixelsOf(i, work.segment_labels), frame.depth), &work);
+    }
+  }
+  for (int i = 0; i < known; ++i) {
+    if (work.segments[i].surface == 0) SettleNewcomer(i, &work);
+  }
+  MergeCoveredSurfaces(&work);
+  FinishLabels(&work);
+  for (const Segment& segment : work.segments) {
+    if (segment.surface == 0 || segment.mask.empty()) continue;
+    const cv::Mat_<uchar> pixels = work.result.labels == segment.surface;
+    registry_.RecordAppearance(segment.surface,
+                               ComputeAppearance(frame.color, points, pixels));
+    support_.Update(segment.surface, pixels, segment.mask, work.prior.labels);
+  }
+  last_ = {work.result.labels.clone(), frame.depth.clone()};
+  last_.depth.setTo(0, work.result.uncertain);
+  return work.result;
+}
+
+}  // namespace splitfusion
