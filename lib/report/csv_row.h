@@ -8,6 +8,7 @@ namespace splitfusion {
 /// Builds one line of a CSV file, field by field.
 class CsvRow {
  public:
+  /// Decimal digits.
   CsvRow& Add(int value);
   /// Shortest text that reads back exactly; empty for NaN and infinity.
   CsvRow& Add(double value);

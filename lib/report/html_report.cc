@@ -1,7 +1,6 @@
 #include "splitfusion/lib/report/html_report.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>

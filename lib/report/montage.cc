@@ -1,5 +1,6 @@
 #include "splitfusion/lib/report/montage.h"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/error.h"

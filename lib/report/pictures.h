@@ -21,6 +21,7 @@ cv::Mat NormalPicture(const cv::Mat& normals);
 /// beyond the range take the colour of its end, pixels without depth are black.
 ///
 /// @param depth HxW 32FC1, metres, 0 = none.
+/// @param near_m, far_m range, metres.
 /// @throw InputError if the type is another or far <= near.
 cv::Mat DepthPicture(const cv::Mat& depth, float near_m = 0.4f,
                      float far_m = 5.0f);
@@ -30,6 +31,7 @@ cv::Mat DepthPicture(const cv::Mat& depth, float near_m = 0.4f,
 ///
 /// @param model_depth HxW 32FC1, metres, 0 = none.
 /// @param live_depth the same size and type.
+/// @param max_error_m error of full red, metres.
 /// @throw InputError if types or sizes differ from that, or max_error <= 0.
 cv::Mat ErrorPicture(const cv::Mat& model_depth, const cv::Mat& live_depth,
                      float max_error_m = 0.05f);
@@ -37,14 +39,17 @@ cv::Mat ErrorPicture(const cv::Mat& model_depth, const cv::Mat& live_depth,
 /// Colour image with the surfaces (except the background) blended over it in
 /// their LabelColor and outlined in full colour, HxW 8UC3.
 ///
-/// @param color HxW 8UC3; @param labels HxW 16UC1 surface ids.
+/// @param color HxW 8UC3.
+/// @param labels HxW 16UC1 surface ids.
+/// @param opacity share of the label colour inside the outline, 0..1.
 /// @throw InputError if types or sizes differ from that.
 cv::Mat LabelPicture(const cv::Mat& color, const cv::Mat& labels,
                      double opacity = 0.5);
 
 /// Model colours on white: white where the model has no depth, HxW 8UC3.
 ///
-/// @param model_color HxW 8UC3; @param model_depth HxW 32FC1, 0 = nothing.
+/// @param model_color HxW 8UC3.
+/// @param model_depth HxW 32FC1, metres, 0 = nothing.
 /// @throw InputError if types or sizes differ from that.
 cv::Mat CompositePicture(const cv::Mat& model_color,
                          const cv::Mat& model_depth);

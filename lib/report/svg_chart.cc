@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 namespace splitfusion {
 namespace {
@@ -57,17 +56,18 @@ Axes MakeAxes(const std::vector<ChartSeries>& series) {
   return axes;
 }
 
-/// Line pieces between gaps; a single value becomes a short dash.
+/// Line pieces between gaps. The last point stands twice, so that a single
+/// value becomes a dot.
 std::string Line(const ChartSeries& series, const Axes& axes,
                  const std::string& color) {
-  std::string svg, points;
+  std::string svg, points, last;
   for (std::size_t i = 0; i <= series.values.size(); ++i) {
     if (i < series.values.size() && std::isfinite(series.values[i])) {
-      points += axes.Point(i, series.values[i]);
+      last = axes.Point(i, series.values[i]);
+      points += last;
     } else if (!points.empty()) {
       svg += "<polyline fill=\"none\" stroke=\"" + color +
-             "\" stroke-linecap=\"round\" points=\"" + points + points +
-             "\"/>\n";
+             "\" stroke-linecap=\"round\" points=\"" + points + last + "\"/>\n";
       points.clear();
     }
   }

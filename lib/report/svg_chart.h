@@ -8,7 +8,7 @@ namespace splitfusion {
 
 /// One named row of values; NaN is a gap.
 struct ChartSeries {
-  std::string name;
+  std::string name;            ///< For the legend.
   std::vector<double> values;  ///< One per position on the horizontal axis.
 };
 
@@ -20,7 +20,7 @@ struct Chart {
   bool stacked = false;  ///< Areas on top of each other instead of lines.
 };
 
-/// The chart as one inline <svg> element, 640x200 units: vertical axis from 0
+/// The chart as one inline SVG element, 640x200 units: vertical axis from 0
 /// to the largest value, legend below. A chart without values says so.
 std::string SvgChart(const Chart& chart);
 

@@ -11,8 +11,8 @@ namespace splitfusion {
 
 /// One pose of a trajectory.
 struct TimedPose {
-  double timestamp = 0;  ///< Seconds.
-  Rigid3d world_from_camera = Rigid3d::Identity();
+  double timestamp = 0;                             ///< Seconds.
+  Rigid3d world_from_camera = Rigid3d::Identity();  ///< Metres.
 };
 
 /// Poses in order of time stamps.

@@ -31,6 +31,8 @@ TEST(SvgChart, ScalesToTheLargestValueAndBreaksAtGaps) {
   EXPECT_EQ(Count(svg, "<polyline"), 2u);
   EXPECT_TRUE(Contains(svg, ">4</text>"));
   EXPECT_FALSE(Contains(svg, "nan"));
+  // From the upper end (4) to its half (2) at the right end; no way back.
+  EXPECT_TRUE(Contains(svg, "points=\"437.3,24 628,92 628,92 \""));
 }
 
 TEST(SvgChart, StacksAreas) {
