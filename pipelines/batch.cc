@@ -85,6 +85,7 @@ class BatchQueue {
 
   std::vector<BatchResult> Run() {
     std::vector<std::thread> threads;
+    threads.reserve(options_.jobs);
     for (int i = 0; i < options_.jobs; ++i) {
       threads.emplace_back([this] { Work(); });
     }

@@ -11,8 +11,6 @@
 
 #include "splitfusion/lib/base/error.h"
 
-extern char** environ;
-
 namespace splitfusion {
 namespace {
 
@@ -70,6 +68,7 @@ ChildResult RunChild(const std::vector<std::string>& arguments,
   actions.Open(STDOUT_FILENO, output, O_WRONLY | O_CREAT | O_TRUNC);
   actions.Open(STDERR_FILENO, errors, O_WRONLY | O_CREAT | O_TRUNC);
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) {
     argv.push_back(const_cast<char*>(argument.c_str()));
   }
