@@ -13,50 +13,50 @@ namespace splitfusion {
 
 /// One association followed by one minimisation.
 struct TrackingRound {
-  std::string stage;  ///< "rigid" or "non_rigid".
-  int stride = 1;     ///< Image resolution: every stride-th pixel.
-  double prior_factor = 1;  ///< Annealing factor on the prior's weight.
-  AssociationCounts association;
-  SolverReport solver;
+  std::string stage;              ///< "rigid" or "non_rigid".
+  int stride = 1;                 ///< Image resolution: every stride-th pixel.
+  double prior_factor = 1;        ///< Annealing factor on the prior's weight.
+  AssociationCounts association;  ///< What became of the model points.
+  SolverReport solver;            ///< The minimisation after it.
 };
 
 /// What happened to one surface in one frame.
 struct SurfaceReport {
-  int id = 0;  ///< 0 is the background.
-  std::string label;
-  SurfaceKind kind = SurfaceKind::kRigid;
+  int id = 0;                              ///< 0 is the background.
+  std::string label;                       ///< Class name.
+  SurfaceKind kind = SurfaceKind::kRigid;  ///< How it is tracked.
   /// "tracked", "born", "lost" (a frame that failed; motion kept, nothing
   /// fused) or "unseen" (not in view).
   std::string state;
-  std::string reason;  ///< Why lost; empty otherwise.
-  int pixels = 0;      ///< Live pixels with depth of this surface.
-  int nodes = 0;
-  int vertices = 0;
+  std::string reason;       ///< Why lost; empty otherwise.
+  int pixels = 0;           ///< Live pixels with depth of this surface.
+  int nodes = 0;            ///< Of the deformation graph.
+  int vertices = 0;         ///< Of the mesh.
   double residual_rms = 0;  ///< Point-to-plane, last round, metres.
-  std::vector<TrackingRound> rounds;
-  double render_seconds = 0;
-  double associate_seconds = 0;
-  double solve_seconds = 0;
-  double fuse_seconds = 0;
-  double mesh_seconds = 0;
+  std::vector<TrackingRound> rounds;  ///< In order of execution.
+  double render_seconds = 0;          ///< Rendering of the model.
+  double associate_seconds = 0;       ///< Projective association.
+  double solve_seconds = 0;           ///< Minimisation.
+  double fuse_seconds = 0;            ///< Integration into the TSDF.
+  double mesh_seconds = 0;            ///< Mesh extraction and graph growth.
 };
 
 /// What happened in one frame.
 struct FrameReport {
-  int frame = 0;
-  double timestamp = 0;
-  std::string stem;
-  double read_seconds = 0;
-  double segment_seconds = 0;
-  double split_seconds = 0;
-  double render_seconds = 0;
-  double associate_seconds = 0;
-  double solve_seconds = 0;
-  double fuse_seconds = 0;
-  double mesh_seconds = 0;
-  double total_seconds = 0;  ///< Wall clock, without writing of results.
-  std::vector<SplitDecision> decisions;
-  std::vector<SurfaceReport> surfaces;  ///< By id; the background first.
+  int frame = 0;                 ///< Frame index, from 0.
+  double timestamp = 0;          ///< Of the depth image, seconds.
+  std::string stem;              ///< Depth file's name without extension.
+  double read_seconds = 0;       ///< Reading of the images.
+  double segment_seconds = 0;    ///< Masks from files or a network.
+  double split_seconds = 0;      ///< Masks to surfaces.
+  double render_seconds = 0;     ///< Rendering of the models.
+  double associate_seconds = 0;  ///< Projective association.
+  double solve_seconds = 0;      ///< Minimisation.
+  double fuse_seconds = 0;       ///< Integration into the TSDFs.
+  double mesh_seconds = 0;       ///< Mesh extraction and graph growth.
+  double total_seconds = 0;      ///< Wall clock, without writing of results.
+  std::vector<SplitDecision> decisions;  ///< Of the surface splitter.
+  std::vector<SurfaceReport> surfaces;   ///< By id; the background first.
 };
 
 }  // namespace splitfusion

@@ -37,19 +37,25 @@ Trajectory ReadTumTrajectory(const std::string& path) {
   return trajectory;
 }
 
+void WriteTumHeader(std::ostream& out) {
+  out << "# timestamp tx ty tz qx qy qz qw   (world from camera, metres)\n";
+}
+
+void WriteTumPose(std::ostream& out, const TimedPose& pose) {
+  const Eigen::Vector3d t = pose.world_from_camera.translation();
+  const Eigen::Quaterniond q(pose.world_from_camera.linear());
+  out << std::fixed << std::setprecision(6) << pose.timestamp
+      << std::defaultfloat << std::setprecision(9);
+  for (const double v : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+    out << ' ' << v;
+  }
+  out << '\n';
+}
+
 void WriteTumTrajectory(const std::string& path, const Trajectory& trajectory) {
   WriteFileAtomically(path, [&](std::ostream& out) {
-    out << "# timestamp tx ty tz qx qy qz qw   (world from camera, metres)\n";
-    for (const TimedPose& pose : trajectory) {
-      const Eigen::Vector3d t = pose.world_from_camera.translation();
-      const Eigen::Quaterniond q(pose.world_from_camera.linear());
-      out << std::fixed << std::setprecision(6) << pose.timestamp
-          << std::defaultfloat << std::setprecision(9);
-      for (const double v : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
-        out << ' ' << v;
-      }
-      out << '\n';
-    }
+    WriteTumHeader(out);
+    for (const TimedPose& pose : trajectory) WriteTumPose(out, pose);
   });
 }
 

@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_SEQUENCE_TRAJECTORY_H_
 #define SPLITFUSION_LIB_SEQUENCE_TRAJECTORY_H_
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,8 @@ namespace splitfusion {
 
 /// One pose of a trajectory.
 struct TimedPose {
-  double timestamp = 0;  ///< Seconds.
-  Rigid3d world_from_camera = Rigid3d::Identity();
+  double timestamp = 0;                             ///< Seconds.
+  Rigid3d world_from_camera = Rigid3d::Identity();  ///< Metres.
 };
 
 /// Poses in order of time stamps.
@@ -23,6 +24,12 @@ using Trajectory = std::vector<TimedPose>;
 /// @throw InputError on a missing file or a line that does not parse; names
 ///     file and line.
 Trajectory ReadTumTrajectory(const std::string& path);
+
+/// Writes the comment line that heads a TUM text file.
+void WriteTumHeader(std::ostream& out);
+
+/// Writes one line of TUM text, for files that grow frame by frame.
+void WriteTumPose(std::ostream& out, const TimedPose& pose);
 
 /// Writes TUM text (6 decimals of time, 9 significant digits of the pose).
 ///

@@ -1,0 +1,68 @@
+#include "splitfusion/lib/report/run_paths.h"
+
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+namespace splitfusion {
+namespace {
+
+std::string Digits(int value, std::size_t width) {
+  std::string digits = std::to_string(value);
+  if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
+  return digits;
+}
+
+bool IsPlain(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.';
+}
+
+}  // namespace
+
+RunPaths::RunPaths(std::string root) : root_(std::move(root)) {}
+
+std::string RunPaths::Options() const { return Below("options.flags"); }
+std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }
+std::string RunPaths::Frames() const { return Below("frames.jsonl"); }
+std::string RunPaths::Iterations() const { return Below("iterations.csv"); }
+std::string RunPaths::Summary() const { return Below("summary.json"); }
+std::string RunPaths::Evaluation() const { return Below("evaluation.json"); }
+std::string RunPaths::HtmlReport() const { return Below("report.html"); }
+std::string RunPaths::Pictures() const { return Below("pictures"); }
+
+std::string RunPaths::SolverReport(int frame) const {
+  return Below("solver/" + FrameName(frame) + ".txt");
+}
+
+std::string RunPaths::Picture(int frame, const std::string& name) const {
+  return Below("pictures/" + FrameName(frame) + "_" + name + ".png");
+}
+
+std::string RunPaths::Mask(const std::string& stem) const {
+  return Below("masks/" + stem + ".png");
+}
+
+std::string RunPaths::Surface(int id, const std::string& label) const {
+  return Below("surfaces/" + SurfaceName(id, label));
+}
+
+std::string RunPaths::WarpedMesh(int id, const std::string& label,
+                                 int frame) const {
+  return Surface(id, label) + "/warped/" + FrameName(frame) + ".ply";
+}
+
+std::string RunPaths::SurfaceName(int id, const std::string& label) {
+  std::string name = Digits(id, 3) + "_" + label;
+  for (char& c : name) {
+    if (!IsPlain(c)) c = '_';
+  }
+  return name;
+}
+
+std::string RunPaths::FrameName(int frame) { return Digits(frame, 6); }
+
+std::string RunPaths::Below(const std::string& name) const {
+  return (std::filesystem::path(root_) / name).string();
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,49 @@
+#ifndef SPLITFUSION_LIB_REPORT_RUN_PATHS_H_
+#define SPLITFUSION_LIB_REPORT_RUN_PATHS_H_
+
+#include <string>
+
+namespace splitfusion {
+
+/// Names of everything in a run directory; the one place that spells them.
+/// FRAME is the frame index in six digits, surfaces are `NNN_LABEL`.
+class RunPaths {
+ public:
+  /// Paths below the run directory `root`; nothing is touched on disk.
+  explicit RunPaths(std::string root);
+
+  /// The run directory itself.
+  const std::string& root() const { return root_; }
+  std::string Options() const;                ///< RUN/options.flags
+  std::string Trajectory() const;             ///< RUN/trajectory.txt
+  std::string Frames() const;                 ///< RUN/frames.jsonl
+  std::string Iterations() const;             ///< RUN/iterations.csv
+  std::string Summary() const;                ///< RUN/summary.json
+  std::string Evaluation() const;             ///< RUN/evaluation.json
+  std::string HtmlReport() const;             ///< RUN/report.html
+  std::string Pictures() const;               ///< RUN/pictures
+  std::string SolverReport(int frame) const;  ///< RUN/solver/FRAME.txt
+  /// RUN/pictures/FRAME_name.png
+  std::string Picture(int frame, const std::string& name) const;
+  /// RUN/masks/STEM.png, 16-bit surface ids; `stem` of the depth file.
+  std::string Mask(const std::string& stem) const;
+  /// RUN/surfaces/NNN_LABEL; characters of the label other than letters, digits,
+  /// hyphens and dots become underscores.
+  std::string Surface(int id, const std::string& label) const;
+  /// RUN/surfaces/NNN_LABEL/warped/FRAME.ply
+  std::string WarpedMesh(int id, const std::string& label, int frame) const;
+
+  /// Folder name of a surface, `NNN_LABEL`.
+  static std::string SurfaceName(int id, const std::string& label);
+  /// Frame index in six digits.
+  static std::string FrameName(int frame);
+
+ private:
+  std::string Below(const std::string& name) const;
+
+  std::string root_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_REPORT_RUN_PATHS_H_

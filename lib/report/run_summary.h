@@ -1,0 +1,74 @@
+#ifndef SPLITFUSION_LIB_REPORT_RUN_SUMMARY_H_
+#define SPLITFUSION_LIB_REPORT_RUN_SUMMARY_H_
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/report/frame_parts.h"
+#include "splitfusion/lib/report/frame_report.h"
+
+namespace splitfusion {
+
+/// One surface over a whole run.
+struct SurfaceSummary {
+  int id = 0;                              ///< 0 is the background.
+  std::string label;                       ///< Class name; spaces kept.
+  SurfaceKind kind = SurfaceKind::kRigid;  ///< Of its last report.
+  int first_frame = 0;                     ///< Frame of its birth.
+  int frames = 0;         ///< Frames in which it was born or tracked.
+  int nodes = 0;          ///< Of the final graph.
+  int vertices = 0;       ///< Of the final mesh.
+  std::vector<int> lost;  ///< Frames whose solve failed.
+};
+
+/// What `summary.json` holds.
+struct RunSummary {
+  std::string preset;                           ///< Name of the preset.
+  std::map<std::string, std::string> versions;  ///< Library -> version.
+  int frames = 0;                               ///< Frames processed.
+  int lost_frames = 0;        ///< Frames in which any surface was lost.
+  double median_seconds = 0;  ///< Per frame, without writing.
+  double mean_seconds = 0;    ///< Per frame, without writing.
+  /// Mean seconds per frame of each part, in the order of kFrameParts.
+  std::array<double, kFrameParts.size()> part_seconds{};
+  double seconds_writing = 0;            ///< Of the whole run.
+  std::int64_t peak_memory_bytes = 0;    ///< Largest resident size.
+  std::vector<SurfaceSummary> surfaces;  ///< By id.
+};
+
+/// Text of `summary.json` as a value; keys in docs/report_format.md.
+nlohmann::ordered_json ToJson(const RunSummary& summary);
+
+/// Gathers the statistics of a run from its frames.
+class SummaryBuilder {
+ public:
+  /// Adds the next frame.
+  void Add(const FrameReport& report);
+
+  /// Replaces nodes and vertices of a surface by those that were written at the
+  /// end. Unknown ids are ignored.
+  void SetSurfaceSize(int id, int nodes, int vertices);
+
+  /// Statistics of the frames so far; preset, versions, writing time and memory
+  /// are left to the caller.
+  RunSummary Build() const;
+
+ private:
+  void AddSurface(int frame, const SurfaceReport& report);
+
+  int lost_frames_ = 0;
+  std::vector<double> seconds_;
+  std::array<double, kFrameParts.size()> part_sums_{};
+  std::map<int, SurfaceSummary> surfaces_;
+};
+
+/// Middle value (mean of the two middle ones for an even number); 0 if empty.
+double Median(std::vector<double> values);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_REPORT_RUN_SUMMARY_H_

@@ -1,0 +1,144 @@
+#include "splitfusion/pipelines/batch_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/report/csv_row.h"
+#include "splitfusion/lib/report/report_json.h"
+#include "splitfusion/lib/report/run_paths.h"
+
+namespace splitfusion {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Row = std::vector<std::string>;
+
+/// Null if the file is missing or broken: such a run has no figures.
+Json ReadJson(const std::string& path) {
+  std::ifstream stream(path);
+  Json value = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  return value.is_discarded() ? Json() : value;
+}
+
+double Figure(const Json& value, const char* pointer) {
+  const Json::json_pointer at(pointer);
+  if (!value.is_object() || !value.contains(at)) return BatchFigures::kNone;
+  const Json& item = value.at(at);
+  return item.is_number() ? item.get<double>() : BatchFigures::kNone;
+}
+
+Json ToJson(const BatchResult& result) {
+  Json object = {
+      {"sequence", result.run.sequence}, {"options", result.run.options},
+      {"folder", result.run.folder},     {"skipped", result.skipped},
+      {"exit_code", result.exit_code},   {"error", result.error}};
+  for (const BatchColumn& column : kBatchColumns) {
+    object[column.name] = result.figures.*column.figure;
+  }
+  return object;
+}
+
+std::string CsvText(const std::vector<BatchResult>& results) {
+  CsvRow head;
+  for (const auto* name :
+       {"sequence", "options", "folder", "skipped", "exit_code", "error"}) {
+    head.Add(std::string(name));
+  }
+  for (const auto& column : kBatchColumns) head.Add(std::string(column.name));
+  std::string text = head.text() + "\n";
+  for (const BatchResult& result : results) {
+    CsvRow row;
+    row.Add(result.run.sequence).Add(result.run.options);
+    row.Add(result.run.folder).Add(result.skipped ? 1 : 0);
+    row.Add(result.exit_code).Add(result.error);
+    for (const auto& column : kBatchColumns) {
+      row.Add(result.figures.*column.figure);
+    }
+    text += row.text() + "\n";
+  }
+  return text;
+}
+
+std::string Formatted(const char* format, double value) {
+  if (!std::isfinite(value)) return "-";
+  char text[48];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+Row TableRow(const BatchResult& result) {
+  const BatchFigures& figures = result.figures;
+  return {result.run.sequence,
+          result.run.options,
+          std::to_string(result.exit_code) + (result.skipped ? " (kept)" : ""),
+          Formatted("%.4f", figures.ate_rmse_m),
+          Formatted("%.0f", figures.frames),
+          Formatted("%.0f", figures.lost_frames),
+          Formatted("%.2f", figures.seconds_median),
+          Formatted("%.0f", figures.peak_memory_bytes / (1 << 20)),
+          result.error};
+}
+
+std::string Aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], row[i].size());
+    }
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line += row[i] + std::string(widths[i] - row[i].size() + 2, ' ');
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+BatchFigures ReadFigures(const std::string& run_folder) {
+  const RunPaths paths(run_folder);
+  const Json summary = ReadJson(paths.Summary());
+  const Json evaluation = ReadJson(paths.Evaluation());
+  BatchFigures figures;
+  figures.frames = Figure(summary, "/frames");
+  figures.lost_frames = Figure(summary, "/lost_frames");
+  figures.seconds_median = Figure(summary, "/seconds_per_frame/median");
+  figures.seconds_mean = Figure(summary, "/seconds_per_frame/mean");
+  figures.peak_memory_bytes = Figure(summary, "/peak_memory_bytes");
+  figures.ate_rmse_m = Figure(evaluation, "/ate/rmse");
+  return figures;
+}
+
+Json ToJson(const std::vector<BatchResult>& results) {
+  Json list = Json::array();
+  for (const BatchResult& result : results) list.push_back(ToJson(result));
+  return list;
+}
+
+void WriteBatchSummary(const std::string& folder,
+                       const std::vector<BatchResult>& results) {
+  const std::filesystem::path path(folder);
+  WriteFileAtomically((path / "summary.csv").string(),
+                      [&](std::ostream& out) { out << CsvText(results); });
+  WriteFileAtomically((path / "summary.json").string(), [&](std::ostream& out) {
+    out << JsonText(ToJson(results), 2) << '\n';
+  });
+}
+
+std::string FormatBatchTable(const std::vector<BatchResult>& results) {
+  std::vector<Row> rows = {{"sequence", "options", "exit", "ATE [m]", "frames",
+                            "lost", "s/frame", "MiB", "error"}};
+  for (const BatchResult& result : results) rows.push_back(TableRow(result));
+  return Aligned(rows);
+}
+
+}  // namespace splitfusion

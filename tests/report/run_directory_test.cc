@@ -1,0 +1,141 @@
+#include "splitfusion/lib/report/run_directory.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/report/json_lines.h"
+#include "splitfusion/lib/report/library_versions.h"
+#include "support/sample_report.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+RunFacts Facts() {
+  return {
+      "splitfusion", "--preset=splitfusion\n--threads=2", {{"ceres", "2.1.0"}}};
+}
+
+TEST(RunPaths, NamesSurfacesAndFrames) {
+  const RunPaths paths("run");
+  EXPECT_EQ(paths.WarpedMesh(2, "teddy bear", 31),
+            "run/surfaces/002_teddy_bear/warped/000031.ply");
+  EXPECT_EQ(paths.Surface(0, "background"), "run/surfaces/000_background");
+  EXPECT_EQ(paths.Picture(120, "normals"), "run/pictures/000120_normals.png");
+  EXPECT_EQ(paths.Mask("1311.25"), "run/masks/1311.25.png");
+  EXPECT_EQ(RunPaths::SurfaceName(1, "../a"), "001_.._a");
+}
+
+TEST(RunDirectory, HoldsEveryFrameBeforeTheEnd) {
+  const TemporaryFolder folder;
+  RunDirectory run(folder / "run", false, Facts());
+  run.AddFrame(SampleReport(0), {100.0, Rigid3d::Identity()});
+  run.AddFrame(SampleReport(1), {100.5, Rigid3d::Identity()});
+  // The run is still open, as after a crash.
+  const auto frames = ReadJsonLines(run.paths().Frames());
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[1]["frame"], 1);
+  const Trajectory poses = ReadTumTrajectory(run.paths().Trajectory());
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1].timestamp, 100.5);
+  EXPECT_NE(folder.Read("run/iterations.csv").find("\n1,1,0,rigid,"),
+            std::string::npos);
+  EXPECT_FALSE(folder.Has("run/summary.json"));
+  EXPECT_FALSE(folder.Has("run/solver"));
+}
+
+TEST(RunDirectory, OptionsRepeatTheRunAndStateVersions) {
+  const TemporaryFolder folder;
+  const RunDirectory run(folder / "run", false, Facts());
+  EXPECT_EQ(folder.Read("run/options.flags"),
+            "# ceres 2.1.0\n--preset=splitfusion\n--threads=2\n");
+}
+
+TEST(RunDirectory, FinishWritesTheSummaryOfTheContract) {
+  const TemporaryFolder folder;
+  RunDirectory run(folder / "run", false, Facts());
+  run.AddFrame(SampleReport(0), {});
+  run.AddWritingSeconds(3);
+  run.Finish();
+  const auto json = nlohmann::json::parse(folder.Read("run/summary.json"));
+  for (const char* key :
+       {"frames", "lost_frames", "seconds_per_frame", "seconds_writing",
+        "peak_memory_bytes", "surfaces", "versions", "preset"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  for (const char* key : {"read", "segment", "split", "render", "associate",
+                          "solve", "fuse", "mesh"}) {
+    EXPECT_TRUE(json["seconds_per_frame"]["parts"].contains(key)) << key;
+  }
+  EXPECT_GE(json["seconds_writing"], 3.0);
+  EXPECT_GT(json["peak_memory_bytes"], 1 << 20);
+  EXPECT_EQ(json["versions"]["ceres"], "2.1.0");
+}
+
+TEST(RunDirectory, WritesSolverTextsOnRequest) {
+  const TemporaryFolder folder;
+  RunDirectory run(folder / "run", false, Facts());
+  FrameReport report = SampleReport(4);
+  report.surfaces[1].rounds[0].solver.full_report = "Solver Summary";
+  run.AddFrame(report, {});
+  EXPECT_EQ(folder.Read("run/solver/000004.txt"),
+            "== surface 1 (teddy bear), round 0, rigid\nSolver Summary\n");
+}
+
+TEST(RunDirectory, RefusesAFolderWithContent) {
+  const TemporaryFolder folder;
+  folder.Write("run/notes.txt", "mine");
+  try {
+    RunDirectory(folder / "run", false, Facts());
+    FAIL() << "expected InputError";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("is not empty"),
+              std::string::npos);
+  }
+  folder.Write("file", "");
+  EXPECT_THROW(RunDirectory(folder / "file", false, Facts()), InputError);
+}
+
+TEST(RunDirectory, OverwriteClearsTheOldRunAndNothingElse) {
+  const TemporaryFolder folder;
+  folder.Write("run/notes.txt", "mine");
+  folder.Write("run/summary.json", "{}");
+  folder.Write("run/surfaces/001_person/mesh.ply", "ply");
+  const RunDirectory run(folder / "run", true, Facts());
+  EXPECT_EQ(folder.Read("run/notes.txt"), "mine");
+  EXPECT_FALSE(folder.Has("run/summary.json"));
+  EXPECT_FALSE(folder.Has("run/surfaces"));
+}
+
+TEST(RunDirectory, LogFilesDoNotCountAsContent) {
+  const TemporaryFolder folder;
+  folder.Write("run/run.log", "");
+  EXPECT_NO_THROW(RunDirectory(folder / "run", false, Facts()));
+}
+
+TEST(ReadJsonLines, LeavesOutACutLineAndNamesABrokenOne) {
+  const TemporaryFolder folder;
+  const auto cut = folder.Write("cut.jsonl", "{\"frame\":0}\n{\"fra");
+  EXPECT_EQ(ReadJsonLines(cut).size(), 1u);
+  const auto broken = folder.Write("broken.jsonl", "{}\n7\n");
+  try {
+    ReadJsonLines(broken);
+    FAIL() << "expected InputError";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("broken.jsonl:2"),
+              std::string::npos);
+  }
+}
+
+TEST(LibraryVersions, NamesTheLibrariesThatDecideTheResult) {
+  const auto versions = LibraryVersions();
+  for (const char* name : {"ceres", "eigen", "opencv", "openvdb", "tbb"}) {
+    ASSERT_EQ(versions.count(name), 1u) << name;
+    EXPECT_NE(versions.at(name).find('.'), std::string::npos) << name;
+  }
+}
+
+}  // namespace
+}  // namespace splitfusion

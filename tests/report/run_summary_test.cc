@@ -1,0 +1,76 @@
+#include "splitfusion/lib/report/run_summary.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/sample_report.h"
+
+namespace splitfusion {
+namespace {
+
+TEST(Median, IsTheMiddleValue) {
+  EXPECT_EQ(Median({}), 0);
+  EXPECT_EQ(Median({3, 1, 2}), 2);
+  EXPECT_EQ(Median({4, 1, 2, 3}), 2.5);
+}
+
+TEST(SummaryBuilder, CountsTimesOverFrames) {
+  SummaryBuilder builder;
+  for (const double seconds : {1.0, 2.0, 9.0}) {
+    FrameReport report = SampleReport(0);
+    report.total_seconds = seconds;
+    report.fuse_seconds = seconds / 10;
+    builder.Add(report);
+  }
+  const auto json = ToJson(builder.Build());
+  EXPECT_EQ(json["frames"], 3);
+  EXPECT_EQ(json["seconds_per_frame"]["median"], 2.0);
+  EXPECT_EQ(json["seconds_per_frame"]["mean"], 4.0);
+  EXPECT_DOUBLE_EQ(json["seconds_per_frame"]["parts"]["fuse"], 0.4);
+  EXPECT_DOUBLE_EQ(json["seconds_per_frame"]["parts"]["solve"], 0.2);
+}
+
+TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
+  SummaryBuilder builder;
+  for (int frame = 0; frame < 5; ++frame) {
+    FrameReport report = SampleReport(frame);
+    SurfaceReport& person = report.surfaces[1];
+    if (frame == 1) person.state = "born";
+    if (frame == 3) person.state = "lost";
+    if (frame == 4) person.state = "unseen";
+    person.vertices = 100 * frame;
+    if (frame == 0) report.surfaces.pop_back();
+    builder.Add(report);
+  }
+  const RunSummary summary = builder.Build();
+  EXPECT_EQ(summary.lost_frames, 1);
+  ASSERT_EQ(summary.surfaces.size(), 2u);
+  EXPECT_EQ(summary.surfaces[0].frames, 5);
+  const SurfaceSummary& person = summary.surfaces[1];
+  EXPECT_EQ(person.first_frame, 1);
+  EXPECT_EQ(person.frames, 2);
+  EXPECT_EQ(person.vertices, 400);
+  EXPECT_EQ(person.lost, std::vector<int>{3});
+}
+
+TEST(SummaryBuilder, TakesTheSizesThatWereWritten) {
+  SummaryBuilder builder;
+  builder.Add(SampleReport(0));
+  builder.SetSurfaceSize(1, 77, 12345);
+  builder.SetSurfaceSize(9, 1, 1);  // Never reported.
+  const RunSummary summary = builder.Build();
+  ASSERT_EQ(summary.surfaces.size(), 2u);
+  EXPECT_EQ(summary.surfaces[1].nodes, 77);
+  EXPECT_EQ(summary.surfaces[1].vertices, 12345);
+}
+
+TEST(SummaryBuilder, IsFiniteWithoutFrames) {
+  const auto json = ToJson(SummaryBuilder().Build());
+  EXPECT_EQ(json["frames"], 0);
+  EXPECT_EQ(json["seconds_per_frame"]["mean"], 0.0);
+  EXPECT_TRUE(json["surfaces"].is_array());
+}
+
+}  // namespace
+}  // namespace splitfusion

@@ -1,0 +1,95 @@
+// Runs sf_run and sf_evaluate over many sequences and option files.
+
+#include <gflags/gflags.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/pipelines/batch.h"
+
+DEFINE_string(sequences, "",
+              "Sequence folders and list files (one folder a line, relative "
+              "to the list, # comments), separated by commas.");
+DEFINE_string(options, "",
+              "Flagfiles of sf_run, separated by commas; every sequence is run "
+              "with every file. Empty: once with the defaults.");
+DEFINE_string(output, "",
+              "Folder of the batch: run directories OUTPUT/SEQUENCE/OPTIONS, "
+              "summary.csv, summary.json.");
+DEFINE_int32(jobs, 1, "Runs at the same time.");
+DEFINE_string(ground_truth, "auto",
+              "auto (SEQ/gt or SEQ, where groundtruth.txt is), none, or a "
+              "folder with one folder per sequence name.");
+DEFINE_bool(overwrite, false,
+            "Repeat runs that are finished (have a summary.json).");
+
+namespace splitfusion {
+namespace {
+
+constexpr int kExitBadInput = 2;
+constexpr int kExitFailedRuns = 3;
+
+/// A program beside this one.
+std::string Beside(const std::string& name) {
+  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name)
+      .string();
+}
+
+BatchOptions OptionsFromFlags() {
+  BatchOptions options;
+  options.run_program = Beside("sf_run");
+  options.evaluate_program = Beside("sf_evaluate");
+  options.sequences = ReadSequences(FLAGS_sequences);
+  options.option_files = SplitAtCommas(FLAGS_options);
+  options.output = FLAGS_output;
+  options.jobs = FLAGS_jobs;
+  options.ground_truth = FLAGS_ground_truth;
+  options.overwrite = FLAGS_overwrite;
+  return options;
+}
+
+void PrintProgress(const BatchProgress& progress) {
+  const BatchResult& last = progress.last;
+  std::fprintf(stderr, "\r\033[K%d/%d  %s %s: %s", progress.done,
+               progress.total, last.run.sequence.c_str(),
+               last.run.options.c_str(),
+               last.exit_code == 0 ? "done" : "FAILED");
+  if (progress.done == progress.total) {
+    std::fputc('\n', stderr);
+  } else if (progress.seconds_left > 0) {
+    std::fprintf(stderr, "  about %.0f s left", progress.seconds_left);
+  }
+}
+
+int Run() {
+  BatchCallback progress;
+  if (isatty(STDERR_FILENO)) progress = PrintProgress;
+  const auto results = RunBatch(OptionsFromFlags(), progress);
+  std::cout << FormatBatchTable(results);
+  const int failed = CountFailed(results);
+  if (failed == 0) return 0;
+  std::cerr << failed << " of " << results.size() << " runs failed; see "
+            << "run.err.log in their folders\n";
+  return kExitFailedRuns;
+}
+
+}  // namespace
+}  // namespace splitfusion
+
+int main(int argc, char** argv) {
+  gflags::SetUsageMessage(
+      "sf_batch --sequences=list.txt|DIR,DIR --output=DIR "
+      "[--options=a.flags,b.flags] [--jobs=N] [--ground_truth=auto|none|DIR] "
+      "[--overwrite]");
+  gflags::ParseCommandLineFlags(&argc, &argv, true);
+  try {
+    return splitfusion::Run();
+  } catch (const splitfusion::InputError& error) {
+    std::cerr << "sf_batch: " << error.what() << '\n';
+    return splitfusion::kExitBadInput;
+  }
+}
