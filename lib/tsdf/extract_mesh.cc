@@ -126,13 +126,12 @@ TriangleMesh ExtractMesh(const TsdfVolume& volume, double min_weight) {
     const openvdb::tools::PolygonPool& pool = mesher.polygonPoolList()[n];
     for (std::size_t i = 0; i < pool.numQuads(); ++i) {
       const openvdb::Vec4I& quad = pool.quad(i);
-      // OpenVDB's polygons are clockwise seen from the positive side.
-      add(quad[2], quad[1], quad[0]);
-      add(quad[3], quad[2], quad[0]);
+      add(quad[0], quad[1], quad[2]);
+      add(quad[0], quad[2], quad[3]);
     }
     for (std::size_t i = 0; i < pool.numTriangles(); ++i) {
       const openvdb::Vec3I& triangle = pool.triangle(i);
-      add(triangle[2], triangle[1], triangle[0]);
+      add(triangle[0], triangle[1], triangle[2]);
     }
   }
   return mesh;

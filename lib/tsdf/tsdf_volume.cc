@@ -43,9 +43,11 @@ void TsdfOptions::Check() const {
 }
 
 void TsdfVolume::Grids::Touch(const openvdb::Coord& origin) {
-  distance->tree().touchLeaf(origin);
-  weight->tree().touchLeaf(origin);
-  color->tree().touchLeaf(origin);
+  // OpenVDB meshes and prunes by active voxels; here a block is in use as a
+  // whole, and the weight says what was observed.
+  distance->tree().touchLeaf(origin)->setValuesOn();
+  weight->tree().touchLeaf(origin)->setValuesOn();
+  color->tree().touchLeaf(origin)->setValuesOn();
 }
 
 TsdfVolume::TsdfVolume(const TsdfOptions& options)
