@@ -8,8 +8,8 @@
 #include <iostream>
 #include <string>
 
-#include "splitfusion/lib/base/error.h"
 #include "splitfusion/pipelines/batch.h"
+#include "tool_main.h"
 
 DEFINE_string(sequences, "",
               "Sequence folders and list files (one folder a line, relative "
@@ -29,9 +29,6 @@ DEFINE_bool(overwrite, false,
 
 namespace splitfusion {
 namespace {
-
-constexpr int kExitBadInput = 2;
-constexpr int kExitFailedRuns = 3;
 
 /// A program beside this one.
 std::string Beside(const std::string& name) {
@@ -71,9 +68,9 @@ int Run() {
   const auto results = RunBatch(OptionsFromFlags(), progress);
   std::cout << FormatBatchTable(results);
   const int failed = CountFailed(results);
-  if (failed == 0) return 0;
+  if (failed == 0) return kExitDone;
   std::cerr << failed << " of " << results.size() << " runs failed; see "
-            << "run.err.log in their folders\n";
+            << "the *.err.log files in their folders\n";
   return kExitFailedRuns;
 }
 
@@ -81,15 +78,11 @@ int Run() {
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
-  gflags::SetUsageMessage(
-      "sf_batch --sequences=list.txt|DIR,DIR --output=DIR "
-      "[--options=a.flags,b.flags] [--jobs=N] [--ground_truth=auto|none|DIR] "
-      "[--overwrite]");
-  gflags::ParseCommandLineFlags(&argc, &argv, true);
-  try {
-    return splitfusion::Run();
-  } catch (const splitfusion::InputError& error) {
-    std::cerr << "sf_batch: " << error.what() << '\n';
-    return splitfusion::kExitBadInput;
-  }
+  return splitfusion::ToolMain(
+      argc, argv,
+      "Runs sf_run, and sf_evaluate where there is a ground truth, for every\n"
+      "sequence with every option file.\n"
+      "  sf_batch --sequences=list.txt|DIR,DIR --output=DIR\n"
+      "           [--options=a.flags,b.flags] [--jobs=N]\n",
+      splitfusion::Run);
 }

@@ -176,8 +176,7 @@ void ReadOtherElement(const PlyElement& element, PlyReader* reader,
         }
         indices.push_back(static_cast<int>(index));
       }
-      if (element.name != "face" ||
-          property.name.rfind("vertex_ind", 0) != 0) {
+      if (element.name != "face" || property.name.rfind("vertex_ind", 0) != 0) {
         continue;
       }
       for (std::size_t k = 2; k < indices.size(); ++k) {
@@ -211,7 +210,13 @@ std::vector<Eigen::Vector3f> ComputeVertexNormals(const TriangleMesh& mesh) {
   return normals;
 }
 
-void WritePly(const std::string& path, const TriangleMesh& mesh) {
+void WritePly(const std::string& path, const TriangleMesh& mesh,
+              const PlyProperties& extra) {
+  for (const auto& [name, values] : extra) {
+    CheckOption(values.size() == mesh.vertices.size(),
+                path + ": values of '" + name + "'", values.size(),
+                std::to_string(mesh.vertices.size()) + ", one a vertex");
+  }
   const bool with_normals = !mesh.normals.empty();
   const bool with_colors = !mesh.colors.empty();
   std::vector<char> bytes;
@@ -220,6 +225,10 @@ void WritePly(const std::string& path, const TriangleMesh& mesh) {
     Append(mesh.vertices[i].data(), 3, &bytes);
     if (with_normals) Append(mesh.normals[i].data(), 3, &bytes);
     if (with_colors) Append(mesh.colors[i].data(), 3, &bytes);
+    for (const auto& property : extra) {
+      const auto value = static_cast<float>(property.second[i]);
+      Append(&value, 1, &bytes);
+    }
   }
   const std::uint8_t corners = 3;
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
@@ -236,6 +245,9 @@ void WritePly(const std::string& path, const TriangleMesh& mesh) {
     if (with_colors) {
       out << "property uchar red\nproperty uchar green\n"
              "property uchar blue\n";
+    }
+    for (const auto& property : extra) {
+      out << "property float " << property.first << '\n';
     }
     out << "element face " << mesh.triangles.size()
         << "\nproperty list uchar int vertex_indices\nend_header\n";

@@ -24,13 +24,16 @@ struct TriangleMesh {
 /// Area-weighted vertex normals from the triangles; zero where no triangle is.
 std::vector<Eigen::Vector3f> ComputeVertexNormals(const TriangleMesh& mesh);
 
-/// Writes a binary little-endian PLY through a temporary name.
-///
-/// @throw InputError if the file cannot be written.
-void WritePly(const std::string& path, const TriangleMesh& mesh);
-
 /// Extra per-vertex scalar properties of a PLY file, by name ("seen", ...).
 using PlyProperties = std::map<std::string, std::vector<double>>;
+
+/// Writes a binary little-endian PLY through a temporary name. `extra`:
+/// further properties of the vertices, one value each, written as floats.
+///
+/// @throw InputError if the file cannot be written or an extra property has
+///     another number of values than there are vertices.
+void WritePly(const std::string& path, const TriangleMesh& mesh,
+              const PlyProperties& extra = {});
 
 /// Reads an ascii or binary little-endian PLY; polygons become triangle fans.
 /// `extra`, if given, receives every other scalar property of the vertices.

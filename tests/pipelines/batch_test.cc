@@ -195,5 +195,28 @@ TEST_F(BatchTest, ChildKeepsTheLastVersionOfAProgressLine) {
   EXPECT_EQ(RunChild({folder_ / "none"}, folder_ / "none").exit_code, 127);
 }
 
+TEST_F(BatchTest, BrokenFilesOfARunGiveNoFigures) {
+  folder_.Write("run/summary.json", "{\"frames\": 4, \"lost_frames\": null}");
+  folder_.Write("run/evaluation.json", "{\"ate\": ");
+  const BatchFigures figures = ReadFigures(folder_ / "run");
+  EXPECT_EQ(figures.frames, 4);
+  EXPECT_TRUE(std::isnan(figures.lost_frames));
+  EXPECT_TRUE(std::isnan(figures.ate_rmse_m));
+  EXPECT_TRUE(std::isnan(figures.seconds_median));
+}
+
+TEST_F(BatchTest, GroundTruthMayLieElsewhere) {
+  AddSequence("room");
+  AddSequence("desk");
+  folder_.Write("truth/room/groundtruth.txt", "");
+  folder_.Write("data/desk/groundtruth.txt", "");
+  options_.ground_truth = folder_ / "truth";
+  const auto plan = PlanBatch(options_);
+  EXPECT_EQ(plan[0].ground_truth, folder_ / "truth/room");
+  EXPECT_EQ(plan[1].ground_truth, "");
+  options_.ground_truth = "atuo";
+  EXPECT_THROW(PlanBatch(options_), InputError);
+}
+
 }  // namespace
 }  // namespace splitfusion

@@ -124,5 +124,32 @@ TEST(WriteMask, KeepsSurfaceIds) {
   EXPECT_THROW(WriteMask(paths, "x", cv::Mat::zeros(2, 2, CV_8U)), InputError);
 }
 
+TEST(Pictures, RefuseOtherTypesAndSayWhatTheyExpected) {
+  try {
+    LabelPicture(cv::Mat(2, 3, CV_8UC3), cv::Mat(2, 4, CV_16UC1));
+    FAIL() << "expected InputError";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "picture: labels is 4x2 CV_16UC1; expected 3x2 CV_16UC1");
+  }
+  EXPECT_THROW(NormalPicture(cv::Mat(2, 2, CV_8UC3)), InputError);
+  EXPECT_THROW(DepthPicture(cv::Mat(2, 2, CV_16UC1)), InputError);
+  EXPECT_THROW(CompositePicture(cv::Mat(2, 2, CV_8UC3), cv::Mat()), InputError);
+}
+
+TEST(WritePng, NamesThePathItCannotWrite) {
+  const TemporaryFolder folder;
+  const std::string file = folder.Write("file", "");
+  try {
+    WritePng(file + "/picture.png", cv::Mat(2, 2, CV_8UC3));
+    FAIL() << "expected InputError";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("file/picture.png"),
+              std::string::npos);
+  }
+  EXPECT_THROW(WritePng(folder / "empty.png", cv::Mat()), InputError);
+  EXPECT_FALSE(folder.Has("empty.png"));
+}
+
 }  // namespace
 }  // namespace splitfusion

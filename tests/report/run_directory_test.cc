@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/report/json_lines.h"
 #include "splitfusion/lib/report/library_versions.h"
 #include "support/sample_report.h"
@@ -135,6 +136,39 @@ TEST(LibraryVersions, NamesTheLibrariesThatDecideTheResult) {
     ASSERT_EQ(versions.count(name), 1u) << name;
     EXPECT_NE(versions.at(name).find('.'), std::string::npos) << name;
   }
+}
+
+TEST(RunDirectory, TrajectoryStreamIsTheFileWrittenAtOnce) {
+  const TemporaryFolder folder;
+  RunDirectory run(folder / "run", false, Facts());
+  Trajectory poses(2);
+  poses[1].timestamp = 0.5;
+  poses[1].world_from_camera.linear() = ExpSo3({0.1, -0.2, 0.3});
+  poses[1].world_from_camera.translation() << 1, -2, 3;
+  for (const TimedPose& pose : poses) run.AddFrame(SampleReport(0), pose);
+  WriteTumTrajectory(folder / "at_once.txt", poses);
+  EXPECT_EQ(folder.Read("run/trajectory.txt"), folder.Read("at_once.txt"));
+}
+
+TEST(RunDirectory, NamesTheFileThatCannotBeWritten) {
+  const TemporaryFolder folder;
+  RunDirectory run(folder / "run", false, Facts());
+  folder.Write("run/solver", "a file where a folder should be");
+  FrameReport report = SampleReport(0);
+  report.surfaces[0].rounds[0].solver.full_report = "text";
+  try {
+    run.AddFrame(report, {});
+    FAIL() << "expected InputError";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("solver/000000.txt"),
+              std::string::npos);
+  }
+}
+
+TEST(ClearRun, ToleratesAMissingFolder) {
+  const TemporaryFolder folder;
+  EXPECT_NO_THROW(ClearRun(RunPaths(folder / "none")));
+  EXPECT_FALSE(folder.Has("none"));
 }
 
 }  // namespace

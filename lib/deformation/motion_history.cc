@@ -1,0 +1,205 @@
+#include "splitfusion/lib/deformation/motion_history.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+using Magic = std::array<char, 8>;
+constexpr Magic kMagic = {'S', 'F', 'M', 'O', 'T', 'N', '0', '1'};
+/// R row by row, then t.
+using StoredMotion = std::array<float, 12>;
+
+StoredMotion Store(const NodeMotion& motion) {
+  StoredMotion stored;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      stored[3 * row + column] =
+          static_cast<float>(motion.rotation(row, column));
+    }
+    stored[9 + row] = static_cast<float>(motion.translation[row]);
+  }
+  return stored;
+}
+
+NodeMotion Restore(const StoredMotion& stored) {
+  NodeMotion motion;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      motion.rotation(row, column) = stored[3 * row + column];
+    }
+    motion.translation[row] = stored[9 + row];
+  }
+  return motion;
+}
+
+template <typename T>
+void Write(const T& value, std::ostream& out) {
+  out.write(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+template <typename T>
+T Read(std::istream& stream) {
+  T value{};
+  stream.read(reinterpret_cast<char*>(&value), sizeof(T));
+  return value;
+}
+
+std::uintmax_t FileSize(std::istream& stream) {
+  stream.seekg(0, std::ios::end);
+  const auto size = static_cast<std::uintmax_t>(stream.tellg());
+  stream.seekg(0);
+  return size;
+}
+
+FrameMotions ReadFrame(std::istream& stream, std::uint32_t nodes) {
+  FrameMotions frame;
+  frame.frame = Read<std::int32_t>(stream);
+  frame.tracked = Read<std::int32_t>(stream) != 0;
+  frame.motions.reserve(nodes);
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    frame.motions.push_back(Restore(Read<StoredMotion>(stream)));
+  }
+  return frame;
+}
+
+std::vector<Eigen::Vector3d> Positions(const Json& json) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const Json& item : json) {
+    const auto p = item.get<std::array<double, 3>>();
+    positions.emplace_back(p[0], p[1], p[2]);
+  }
+  return positions;
+}
+
+void CheckEdges(const std::string& path, const DeformationGraph& graph) {
+  if (graph.neighbors.size() != graph.positions.size()) {
+    throw InputError(path + ": 'edges' has " +
+                     std::to_string(graph.neighbors.size()) +
+                     " entries: expected one a node, " +
+                     std::to_string(graph.positions.size()));
+  }
+  for (const std::vector<int>& neighbors : graph.neighbors) {
+    for (const int j : neighbors) {
+      if (j >= 0 && j < graph.size()) continue;
+      throw InputError(path + ": 'edges' names node " + std::to_string(j) +
+                       ": expected 0.." + std::to_string(graph.size() - 1));
+    }
+  }
+}
+
+DeformationGraph ParseGraph(const std::string& path, const Json& json) {
+  DeformationGraph graph;
+  const char* field = "node_spacing";
+  try {
+    graph.node_spacing = json.at(field).get<double>();
+    graph.positions = Positions(json.at(field = "positions"));
+    graph.neighbors =
+        json.at(field = "edges").get<std::vector<std::vector<int>>>();
+  } catch (const Json::exception& error) {
+    throw InputError(path + ": field '" + field + "': " + error.what());
+  }
+  graph.motions.resize(graph.positions.size());
+  CheckEdges(path, graph);
+  return graph;
+}
+
+int ParseNeighborsPerPoint(const std::string& path, const Json& json) {
+  const auto found = json.find("neighbors_per_point");
+  if (found == json.end() || !found->is_number_integer()) {
+    throw InputError(path +
+                     ": field 'neighbors_per_point': expected an integer");
+  }
+  return found->get<int>();
+}
+
+}  // namespace
+
+const FrameMotions* MotionHistory::Find(int frame) const {
+  const auto found = std::lower_bound(
+      frames.begin(), frames.end(), frame,
+      [](const FrameMotions& item, int index) { return item.frame < index; });
+  return found != frames.end() && found->frame == frame ? &*found : nullptr;
+}
+
+void WriteMotions(const std::string& path, const MotionHistory& history) {
+  const std::size_t nodes =
+      history.frames.empty() ? 0 : history.frames.front().motions.size();
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    Write(kMagic, out);
+    Write(static_cast<std::uint32_t>(history.frames.size()), out);
+    Write(static_cast<std::uint32_t>(nodes), out);
+    for (const FrameMotions& frame : history.frames) {
+      assert(frame.motions.size() == nodes);
+      Write(static_cast<std::int32_t>(frame.frame), out);
+      Write(static_cast<std::int32_t>(frame.tracked ? 1 : 0), out);
+      for (const NodeMotion& motion : frame.motions) Write(Store(motion), out);
+    }
+  });
+}
+
+MotionHistory ReadMotions(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  const std::uintmax_t size = FileSize(stream);
+  if (Read<Magic>(stream) != kMagic) {
+    throw InputError(path + ": expected a file that begins with 'SFMOTN01'");
+  }
+  const auto frames = Read<std::uint32_t>(stream);
+  const auto nodes = Read<std::uint32_t>(stream);
+  const std::uintmax_t expected =
+      sizeof(kMagic) + 8 +
+      std::uintmax_t{frames} * (8 + std::uintmax_t{nodes} * 48);
+  if (!stream || size != expected) {
+    throw InputError(path + ": " + std::to_string(size) + " bytes: expected " +
+                     std::to_string(expected) + " for " +
+                     std::to_string(frames) + " frames of " +
+                     std::to_string(nodes) + " nodes");
+  }
+  MotionHistory history;
+  for (std::uint32_t i = 0; i < frames; ++i) {
+    history.frames.push_back(ReadFrame(stream, nodes));
+  }
+  return history;
+}
+
+void WriteGraph(const std::string& path, const DeformationGraph& graph,
+                int neighbors_per_point) {
+  Json positions = Json::array();
+  for (const Eigen::Vector3d& g : graph.positions) {
+    positions.push_back({g.x(), g.y(), g.z()});
+  }
+  const Json json = {{"node_spacing", graph.node_spacing},
+                     {"neighbors_per_point", neighbors_per_point},
+                     {"positions", positions},
+                     {"edges", graph.neighbors}};
+  WriteFileAtomically(path, [&](std::ostream& out) { out << json << '\n'; });
+}
+
+DeformationGraph ReadGraph(const std::string& path, int* neighbors_per_point) {
+  std::ifstream stream(path);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) {
+    throw InputError(path +
+                     ": expected a JSON object with node_spacing, "
+                     "neighbors_per_point, positions, edges");
+  }
+  if (neighbors_per_point != nullptr) {
+    *neighbors_per_point = ParseNeighborsPerPoint(path, json);
+  }
+  return ParseGraph(path, json);
+}
+
+}  // namespace splitfusion

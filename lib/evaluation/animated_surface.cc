@@ -1,0 +1,53 @@
+#include "splitfusion/lib/evaluation/animated_surface.h"
+
+#include <tbb/parallel_for.h>
+
+#include <utility>
+
+namespace splitfusion {
+
+AnimatedSurface::AnimatedSurface(RecordedSurface surface)
+    : surface_(std::move(surface)),
+      index_(surface_.graph, surface_.neighbors_per_point),
+      skinnings_(index_.Skin(surface_.mesh.vertices)) {}
+
+bool AnimatedSurface::HasMotions(int frame) const {
+  return surface_.motions.Find(frame) != nullptr;
+}
+
+bool AnimatedSurface::Tracked(int frame) const {
+  const FrameMotions* motions = surface_.motions.Find(frame);
+  return motions != nullptr && motions->tracked;
+}
+
+int AnimatedSurface::FirstFrame() const {
+  const auto& frames = surface_.motions.frames;
+  return frames.empty() ? -1 : frames.front().frame;
+}
+
+WarpField AnimatedSurface::WarpAt(int frame) const {
+  DeformationGraph graph = surface_.graph;
+  graph.motions = surface_.motions.Find(frame)->motions;
+  return WarpField(graph);
+}
+
+std::vector<Eigen::Vector3f> AnimatedSurface::VerticesAt(int frame) const {
+  const WarpField warp = WarpAt(frame);
+  std::vector<Eigen::Vector3f> vertices(surface_.mesh.vertices.size());
+  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
+    vertices[i] = warp.WarpPoint(skinnings_[i], surface_.mesh.vertices[i]);
+  });
+  return vertices;
+}
+
+std::vector<AnimatedSurface> AnimateSurfaces(
+    std::vector<RecordedSurface> surfaces) {
+  std::vector<AnimatedSurface> animated;
+  animated.reserve(surfaces.size());
+  for (RecordedSurface& surface : surfaces) {
+    animated.emplace_back(std::move(surface));
+  }
+  return animated;
+}
+
+}  // namespace splitfusion

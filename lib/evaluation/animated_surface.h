@@ -1,0 +1,54 @@
+#ifndef SPLITFUSION_LIB_EVALUATION_ANIMATED_SURFACE_H_
+#define SPLITFUSION_LIB_EVALUATION_ANIMATED_SURFACE_H_
+
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/evaluation/recorded_run.h"
+
+namespace splitfusion {
+
+/// A recorded surface that can be carried to every frame of its life.
+class AnimatedSurface {
+ public:
+  /// Keeps the surface and computes the skinning of its mesh.
+  explicit AnimatedSurface(RecordedSurface surface);
+
+  /// The surface as the run left it.
+  const RecordedSurface& recorded() const { return surface_; }
+  /// Whether this is the background.
+  bool background() const { return surface_.id == 0; }
+
+  /// Whether the surface has motions for a frame.
+  bool HasMotions(int frame) const;
+  /// Whether it has, and they were tracked, not carried over.
+  bool Tracked(int frame) const;
+  /// First frame with motions; -1 if there is none.
+  int FirstFrame() const;
+
+  /// Warp into the camera frame of a frame that has motions.
+  WarpField WarpAt(int frame) const;
+
+  /// Vertices of the mesh in the camera frame of a frame that has motions,
+  /// metres; the triangles are those of the mesh.
+  std::vector<Eigen::Vector3f> VerticesAt(int frame) const;
+
+  /// Skinning of a canonical point, metres.
+  Skinning Skin(const Eigen::Vector3f& point) const {
+    return index_.Skin(point);
+  }
+
+ private:
+  RecordedSurface surface_;
+  SkinningIndex index_;
+  std::vector<Skinning> skinnings_;  // Of the vertices.
+};
+
+/// All surfaces of a run, by id.
+std::vector<AnimatedSurface> AnimateSurfaces(
+    std::vector<RecordedSurface> surfaces);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EVALUATION_ANIMATED_SURFACE_H_

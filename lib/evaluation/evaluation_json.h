@@ -1,0 +1,27 @@
+#ifndef SPLITFUSION_LIB_EVALUATION_EVALUATION_JSON_H_
+#define SPLITFUSION_LIB_EVALUATION_EVALUATION_JSON_H_
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "splitfusion/lib/evaluation/run_evaluation.h"
+
+namespace splitfusion {
+
+/// What `evaluation.json` holds; keys in docs/evaluation.md.
+nlohmann::ordered_json ToJson(const RunEvaluation& evaluation);
+
+/// The keys `ate`, `rpe`, ... alone.
+nlohmann::ordered_json ToJson(const TrajectoryError& error);
+
+/// The keys `accuracy`, `completeness` and `f_score`.
+nlohmann::ordered_json ToJson(const SurfaceError& error);
+
+/// Writes a value, indented, through a temporary name.
+///
+/// @throw InputError if the file cannot be written.
+void WriteJson(const std::string& path, const nlohmann::ordered_json& value);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EVALUATION_EVALUATION_JSON_H_

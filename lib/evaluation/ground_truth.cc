@@ -1,0 +1,83 @@
+#include "splitfusion/lib/evaluation/ground_truth.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string IfExists(const fs::path& path) {
+  return fs::exists(path) ? path.string() : std::string();
+}
+
+/// instK_T.ply, T in seconds; files of other names are not looked at.
+std::vector<PosedMeshFile> FindPosedMeshes(const fs::path& folder) {
+  std::vector<PosedMeshFile> files;
+  if (!fs::is_directory(folder)) return files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    PosedMeshFile file;
+    if (entry.path().extension() == ".ply" &&
+        std::sscanf(entry.path().stem().string().c_str(), "inst%d_%lf",
+                    &file.instance, &file.timestamp) == 2) {
+      file.path = entry.path().string();
+      files.push_back(file);
+    }
+  }
+  std::sort(files.begin(), files.end(),
+            [](const PosedMeshFile& a, const PosedMeshFile& b) {
+              return std::tie(a.instance, a.timestamp) <
+                     std::tie(b.instance, b.timestamp);
+            });
+  return files;
+}
+
+/// {"instances": [{"id": 1, "name": "person1", ...}, ...]}
+std::map<int, std::string> ReadNames(const std::string& path) {
+  std::map<int, std::string> names;
+  if (path.empty()) return names;
+  std::ifstream stream(path);
+  try {
+    const auto json = nlohmann::json::parse(stream);
+    for (const auto& item : json.at("instances")) {
+      names[item.at("id").get<int>()] = item.at("name").get<std::string>();
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(path + ": expected 'instances' with 'id' and 'name' (" +
+                     error.what() + ")");
+  }
+  return names;
+}
+
+}  // namespace
+
+GroundTruth ReadGroundTruth(const std::string& folder) {
+  fs::path root(folder);
+  if (!fs::exists(root / "groundtruth.txt")) root /= "gt";
+  if (!fs::exists(root / "groundtruth.txt")) {
+    throw InputError(folder +
+                     ": expected a folder with groundtruth.txt (or "
+                     "gt/groundtruth.txt)");
+  }
+  GroundTruth truth;
+  truth.folder = root.string();
+  truth.trajectory = ReadTumTrajectory((root / "groundtruth.txt").string());
+  if (truth.trajectory.empty()) {
+    throw InputError((root / "groundtruth.txt").string() + ": no pose");
+  }
+  truth.static_mesh = IfExists(root / "static_mesh.ply");
+  truth.tracks = IfExists(root / "tracks.bin");
+  truth.labels = IfExists(root / "label");
+  truth.posed_meshes = FindPosedMeshes(root / "mesh");
+  truth.names = ReadNames(IfExists(root / "labels.json"));
+  return truth;
+}
+
+}  // namespace splitfusion

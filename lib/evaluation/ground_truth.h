@@ -1,0 +1,38 @@
+#ifndef SPLITFUSION_LIB_EVALUATION_GROUND_TRUTH_H_
+#define SPLITFUSION_LIB_EVALUATION_GROUND_TRUTH_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/sequence/trajectory.h"
+
+namespace splitfusion {
+
+/// A true mesh of one moving instance at one time.
+struct PosedMeshFile {
+  int instance = 0;      ///< Instance id, from 1.
+  double timestamp = 0;  ///< Seconds.
+  std::string path;      ///< PLY, world frame.
+};
+
+/// What is known about a sequence. Paths are empty where there is nothing.
+struct GroundTruth {
+  std::string folder;       ///< Where groundtruth.txt lies.
+  Trajectory trajectory;    ///< World from camera, in the order of the file.
+  std::string static_mesh;  ///< static_mesh.ply
+  std::string tracks;       ///< tracks.bin
+  std::string labels;       ///< Folder label/ of STEM.png, instance per pixel.
+  std::vector<PosedMeshFile> posed_meshes;  ///< mesh/instK_T.ply, by K and T.
+  std::map<int, std::string> names;  ///< Instance -> name, of labels.json.
+};
+
+/// Finds ground truth in `folder` or its subfolder `gt`.
+///
+/// @throw InputError if neither has a groundtruth.txt, or if it or labels.json
+///     is broken.
+GroundTruth ReadGroundTruth(const std::string& folder);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EVALUATION_GROUND_TRUTH_H_

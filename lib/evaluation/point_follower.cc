@@ -1,0 +1,162 @@
+#include "splitfusion/lib/evaluation/point_follower.h"
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/sequence/image_file.h"
+
+namespace splitfusion {
+namespace {
+
+/// Surface ids of the pixels of one frame; knows nothing if the run has no
+/// masks or no camera.
+class FrameMask {
+ public:
+  FrameMask(const RecordedRun& run, const RecordedFrame& frame) {
+    const std::filesystem::path path =
+        std::filesystem::path(run.root) / "masks" / (frame.stem + ".png");
+    if (!run.camera || frame.stem.empty() || !std::filesystem::exists(path)) {
+      return;
+    }
+    camera_ = *run.camera;
+    labels_ = ReadLabelImage(path.string());
+  }
+
+  bool known() const { return !labels_.empty(); }
+
+  /// Surface id at the pixel of a point (camera frame); 0 if none.
+  int IdAt(const Eigen::Vector3d& point) const {
+    if (!known() || point.z() <= 0) return 0;
+    const Eigen::Vector2d pixel = camera_.Project(point);
+    const double u = std::round(pixel.x());
+    const double v = std::round(pixel.y());
+    if (!(u >= 0 && v >= 0 && u < labels_.cols && v < labels_.rows)) return 0;
+    return labels_(static_cast<int>(v), static_cast<int>(u));
+  }
+
+ private:
+  PinholeCamera camera_;
+  cv::Mat_<std::uint16_t> labels_;
+};
+
+/// A query on its way.
+struct FollowedPoint {
+  Eigen::Vector3d position;  ///< Camera frame of the current frame.
+  std::optional<Attachment> attachment;
+};
+
+class Follower {
+ public:
+  Follower(const RecordedRun& run, const std::vector<AnimatedSurface>& surfaces,
+           const std::vector<TrackPoint>& queries,
+           const AttachmentOptions& options)
+      : run_(run), surfaces_(surfaces), options_(options) {
+    for (const TrackPoint& query : queries) {
+      points_.push_back({query.position, std::nullopt});
+    }
+  }
+
+  /// Attaches what is not attached yet to the surfaces that are there in
+  /// `frame`, if `only_newborn` to those that were not there before.
+  bool Attach(const RecordedFrame& frame, bool only_newborn) {
+    std::vector<const AnimatedSurface*> present;
+    for (const AnimatedSurface& surface : surfaces_) {
+      if (surface.HasMotions(frame.index) &&
+          (!only_newborn || surface.FirstFrame() == frame.index)) {
+        present.push_back(&surface);
+      }
+    }
+    if (present.empty()) return false;
+    const FrameMask mask(run_, frame);
+    const SurfaceAttacher attacher(present, frame.index, options_);
+    for (FollowedPoint& point : points_) {
+      if (point.attachment) continue;
+      point.attachment =
+          attacher.Attach(point.position, mask.IdAt(point.position));
+    }
+    return mask.known();
+  }
+
+  /// Carries all points from one frame into the next.
+  void Advance(const RecordedFrame& from, const RecordedFrame& to) {
+    const Rigid3d to_from =
+        to.pose.world_from_camera.inverse() * from.pose.world_from_camera;
+    std::map<int, WarpField> warps;
+    for (const AnimatedSurface& surface : surfaces_) {
+      if (surface.HasMotions(to.index)) {
+        warps.emplace(surface.recorded().id, surface.WarpAt(to.index));
+      }
+    }
+    for (FollowedPoint& point : points_) {
+      const auto warp =
+          point.attachment
+              ? warps.find(point.attachment->surface->recorded().id)
+              : warps.end();
+      point.position = warp != warps.end()
+                           ? point.attachment->PositionAt(warp->second)
+                           : to_from * point.position;
+    }
+  }
+
+  const std::vector<FollowedPoint>& points() const { return points_; }
+
+ private:
+  const RecordedRun& run_;
+  const std::vector<AnimatedSurface>& surfaces_;
+  AttachmentOptions options_;
+  std::vector<FollowedPoint> points_;
+};
+
+void Append(const std::vector<TrackPoint>& queries, int frame,
+            const Follower& follower, FollowedPoints* result) {
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    result->points.push_back(
+        {queries[i].id, frame, follower.points()[i].position});
+  }
+}
+
+const RecordedFrame& QueryFrame(const RecordedRun& run,
+                                const std::vector<TrackPoint>& queries) {
+  const int frame = queries.front().frame;
+  for (const TrackPoint& query : queries) {
+    CheckOption(query.frame == frame, "frame of a query point", query.frame,
+                "one frame for all, " + std::to_string(frame));
+  }
+  const RecordedFrame* found = run.Find(frame);
+  CheckOption(
+      found != nullptr, "frame of the query points", frame,
+      "a frame of the run, 0.." + std::to_string(run.frames.back().index));
+  return *found;
+}
+
+}  // namespace
+
+FollowedPoints FollowPoints(const RecordedRun& run,
+                            const std::vector<AnimatedSurface>& surfaces,
+                            const std::vector<TrackPoint>& queries, int frames,
+                            const AttachmentOptions& options) {
+  FollowedPoints result;
+  if (queries.empty()) return result;
+  const RecordedFrame* frame = &QueryFrame(run, queries);
+  Follower follower(run, surfaces, queries, options);
+  result.by_mask = follower.Attach(*frame, /*only_newborn=*/false);
+  Append(queries, frame->index, follower, &result);
+  const int last = frame->index + frames;
+  for (const RecordedFrame& next : run.frames) {
+    if (next.index <= frame->index || next.index > last) continue;
+    follower.Advance(*frame, next);
+    follower.Attach(next, /*only_newborn=*/true);
+    Append(queries, next.index, follower, &result);
+    frame = &next;
+  }
+  for (const FollowedPoint& point : follower.points()) {
+    ++(point.attachment ? result.attached : result.unattached);
+  }
+  return result;
+}
+
+}  // namespace splitfusion

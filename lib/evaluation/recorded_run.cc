@@ -1,0 +1,161 @@
+#include "splitfusion/lib/evaluation/recorded_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/sequence/calibration.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Frames by the rows of the trajectory alone.
+std::vector<RecordedFrame> FramesOfTrajectory(const std::string& path) {
+  std::vector<RecordedFrame> frames;
+  for (const TimedPose& pose : ReadTumTrajectory(path)) {
+    frames.push_back({static_cast<int>(frames.size()), pose, ""});
+  }
+  if (frames.empty()) throw InputError(path + ": no pose: expected some");
+  return frames;
+}
+
+/// Sets index and stem of a frame from its line of frames.jsonl.
+void ReadFrameLine(const std::string& place, const std::string& line,
+                   RecordedFrame* frame) {
+  try {
+    const auto json = nlohmann::json::parse(line);
+    frame->index = json.at("frame").get<int>();
+    frame->stem = json.at("stem").get<std::string>();
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(place + ": expected an object with 'frame' and 'stem' (" +
+                     error.what() + ")");
+  }
+}
+
+void ReadFrameLines(const std::string& path,
+                    std::vector<RecordedFrame>* frames) {
+  std::ifstream stream(path);
+  if (!stream) return;
+  std::size_t count = 0;
+  for (std::string line; std::getline(stream, line); ++count) {
+    if (count < frames->size()) {
+      ReadFrameLine(path + ":" + std::to_string(count + 1), line,
+                    &(*frames)[count]);
+    }
+  }
+  if (count != frames->size()) {
+    throw InputError(path + ": " + std::to_string(count) +
+                     " lines: expected one for each of the " +
+                     std::to_string(frames->size()) +
+                     " poses of trajectory.txt");
+  }
+}
+
+/// The value of --sequence in a flagfile; empty if there is none.
+std::string SequenceOfFlags(const std::string& path) {
+  std::ifstream stream(path);
+  const std::string flag = "--sequence=";
+  for (std::string line; std::getline(stream, line);) {
+    if (line.rfind(flag, 0) == 0) return line.substr(flag.size());
+  }
+  return "";
+}
+
+std::optional<PinholeCamera> FindCamera(const fs::path& root) {
+  std::optional<Calibration> found = FindCalibration(root.string());
+  const std::string sequence =
+      SequenceOfFlags((root / "options.flags").string());
+  if (!found && !sequence.empty()) found = FindCalibration(sequence);
+  if (!found) return std::nullopt;
+  return found->camera;
+}
+
+std::vector<RecordedSurface> ReadSurfaces(const fs::path& folder) {
+  std::set<std::string> names;
+  if (fs::is_directory(folder)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      if (entry.is_directory()) names.insert(entry.path().string());
+    }
+  }
+  std::vector<RecordedSurface> surfaces;
+  for (const std::string& name : names) {
+    surfaces.push_back(ReadRecordedSurface(name));
+  }
+  std::sort(surfaces.begin(), surfaces.end(),
+            [](const RecordedSurface& a, const RecordedSurface& b) {
+              return a.id < b.id;
+            });
+  return surfaces;
+}
+
+/// Sets id and label from the folder name NNN_LABEL.
+void ParseName(const fs::path& folder, RecordedSurface* surface) {
+  const std::string name = folder.filename().string();
+  const std::size_t digits =
+      std::min(name.find_first_not_of("0123456789"), name.size());
+  if (digits == 0 || digits > 9 || digits == name.size() ||
+      name[digits] != '_') {
+    throw InputError(folder.string() + ": expected a name NNN_LABEL");
+  }
+  surface->id = std::stoi(name.substr(0, digits));
+  surface->label = name.substr(digits + 1);
+}
+
+void CheckMotions(const std::string& path, const RecordedSurface& surface) {
+  const std::size_t nodes = surface.graph.positions.size();
+  if (nodes == 0) throw InputError(path + ": graph.json has no node");
+  for (const FrameMotions& frame : surface.motions.frames) {
+    if (frame.motions.size() == nodes) continue;
+    throw InputError(
+        path + ": motions.bin has " + std::to_string(frame.motions.size()) +
+        " nodes: expected those of graph.json, " + std::to_string(nodes));
+  }
+}
+
+}  // namespace
+
+const RecordedFrame* RecordedRun::Find(int frame) const {
+  const auto found = std::find_if(
+      frames.begin(), frames.end(),
+      [frame](const RecordedFrame& item) { return item.index == frame; });
+  return found != frames.end() ? &*found : nullptr;
+}
+
+Trajectory RecordedRun::EstimatedTrajectory() const {
+  Trajectory trajectory;
+  for (const RecordedFrame& frame : frames) trajectory.push_back(frame.pose);
+  return trajectory;
+}
+
+RecordedSurface ReadRecordedSurface(const std::string& folder) {
+  const fs::path path(folder);
+  RecordedSurface surface;
+  ParseName(path, &surface);
+  surface.mesh = ReadPly((path / "mesh.ply").string());
+  surface.graph =
+      ReadGraph((path / "graph.json").string(), &surface.neighbors_per_point);
+  surface.motions = ReadMotions((path / "motions.bin").string());
+  CheckMotions(folder, surface);
+  return surface;
+}
+
+RecordedRun ReadRun(const std::string& root) {
+  const fs::path path(root);
+  if (!fs::is_directory(path)) {
+    throw InputError(root + ": expected the directory of a run");
+  }
+  RecordedRun run;
+  run.root = root;
+  run.frames = FramesOfTrajectory((path / "trajectory.txt").string());
+  ReadFrameLines((path / "frames.jsonl").string(), &run.frames);
+  run.camera = FindCamera(path);
+  run.surfaces = ReadSurfaces(path / "surfaces");
+  return run;
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,65 @@
+#ifndef SPLITFUSION_LIB_EVALUATION_RUN_EVALUATION_H_
+#define SPLITFUSION_LIB_EVALUATION_RUN_EVALUATION_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/evaluation/animated_surface.h"
+#include "splitfusion/lib/evaluation/ground_truth.h"
+#include "splitfusion/lib/evaluation/instance_error.h"
+#include "splitfusion/lib/evaluation/point_follower.h"
+#include "splitfusion/lib/evaluation/recorded_run.h"
+#include "splitfusion/lib/evaluation/surface_error.h"
+#include "splitfusion/lib/evaluation/track_error.h"
+#include "splitfusion/lib/evaluation/trajectory_error.h"
+
+namespace splitfusion {
+
+/// How a run is compared with the truth.
+struct EvaluationOptions {
+  TrajectoryErrorOptions trajectory;  ///< ATE, RPE.
+  SurfaceErrorOptions surface;        ///< Background and instances.
+  AttachmentOptions attachment;       ///< Of track points.
+  /// Frame in which the track points are given; -1 = the one in which most of
+  /// them are visible (the first of these), `track_frames` before the end.
+  int track_frame = -1;
+  int track_frames = 30;  ///< Frames through which they are followed.
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+/// Result of following the true track points through a run.
+struct TrackEvaluation {
+  TrackErrors errors;    ///< Against the truth, metres.
+  int attached = 0;      ///< Points attached to a surface.
+  int unattached = 0;    ///< Points that stayed where they were.
+  bool by_mask = false;  ///< Whether masks told the surface of a point.
+};
+
+/// All that a run can be measured by. What is empty was not known; `skipped`
+/// says why.
+struct RunEvaluation {
+  std::string run;             ///< The run directory.
+  std::string ground_truth;    ///< Folder of groundtruth.txt.
+  TrajectoryError trajectory;  ///< ATE, RPE, alignment.
+  /// The background's mesh, put into the true world by the ATE's alignment.
+  std::optional<SurfaceError> background;
+  std::vector<InstanceError> instances;   ///< By instance.
+  std::optional<TrackEvaluation> tracks;  ///< Track error.
+  std::vector<std::string> skipped;       ///< What was not evaluated, and why.
+};
+
+/// Evaluates a run without tracking again. `surfaces`: those of `run`.
+///
+/// @throw InputError if fewer than three poses match, or if a file of the
+///     ground truth is broken.
+RunEvaluation EvaluateRun(const RecordedRun& run,
+                          const std::vector<AnimatedSurface>& surfaces,
+                          const GroundTruth& truth,
+                          const EvaluationOptions& options);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EVALUATION_RUN_EVALUATION_H_

@@ -1,0 +1,34 @@
+#ifndef SPLITFUSION_TESTS_SUPPORT_SHARED_DATA_H_
+#define SPLITFUSION_TESTS_SUPPORT_SHARED_DATA_H_
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace splitfusion {
+
+/// Path of an entry of the optional data folder: $SPLITFUSION_SHARED, or else
+/// `shared` beside the repository. Empty if the entry is not there.
+inline std::string SharedData(const std::string& name) {
+  namespace fs = std::filesystem;
+  const char* folder = std::getenv("SPLITFUSION_SHARED");
+  // This file is tests/support/shared_data.h of the repository.
+  const fs::path root = folder != nullptr ? fs::path(folder)
+                                          : fs::path(__FILE__).parent_path() /
+                                                ".." / ".." / ".." / "shared";
+  const fs::path path = (root / "data" / name).lexically_normal();
+  return fs::exists(path) ? path.string() : std::string();
+}
+
+}  // namespace splitfusion
+
+/// Skips the test, and says so, unless `path` (of SharedData) is there.
+#define SKIP_WITHOUT_SHARED_DATA(path, name)                   \
+  if ((path).empty()) {                                        \
+    GTEST_SKIP() << "shared data not found: " << (name)        \
+                 << " (set SPLITFUSION_SHARED to its folder)"; \
+  }
+
+#endif  // SPLITFUSION_TESTS_SUPPORT_SHARED_DATA_H_

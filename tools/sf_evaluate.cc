@@ -1,0 +1,160 @@
+// Compares a run, a trajectory or a mesh with ground truth, and says where a
+// run carries surface points.
+
+#include <gflags/gflags.h>
+
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/evaluation/evaluation_json.h"
+#include "splitfusion/lib/evaluation/evaluation_table.h"
+#include "splitfusion/lib/evaluation/point_follower.h"
+#include "splitfusion/lib/evaluation/run_evaluation.h"
+#include "splitfusion/lib/evaluation/track_point.h"
+#include "tool_main.h"
+
+DEFINE_string(run, "", "Directory of a run of sf_run.");
+DEFINE_string(ground_truth, "",
+              "With --run: folder with groundtruth.txt (or gt/groundtruth.txt)"
+              "; with --trajectory: a TUM file.");
+DEFINE_string(trajectory, "", "TUM file to compare with --ground_truth.");
+DEFINE_string(mesh, "", "PLY to compare with --ground_truth_mesh.");
+DEFINE_string(ground_truth_mesh, "", "PLY of the truth, same frame.");
+DEFINE_string(output, "",
+              "JSON file of the result; default RUN/evaluation.json.");
+DEFINE_double(max_time_difference, 0.02, "Of matching poses, seconds.");
+DEFINE_int32(samples, 100000, "Random surface points, each direction.");
+DEFINE_double(max_distance, 0.3, "Surface distances are clipped to it, m.");
+DEFINE_double(min_seen, 3,
+              "Completeness over triangles with vertex property seen >= it.");
+DEFINE_int32(label, -1,
+             "Only triangles of the static truth with this vertex property "
+             "label (0 = room without furniture); -1 = all.");
+DEFINE_string(track_query, "",
+              "CSV id,frame,x,y,z (camera frame, m): points of one frame to "
+              "follow through --run.");
+DEFINE_string(track_output, "", "CSV for the followed points.");
+DEFINE_int32(track_frames, 30, "Frames through which points are followed.");
+DEFINE_int32(track_frame, -1,
+             "Frame in which the true track points are given; -1 = the one in "
+             "which most are visible.");
+
+namespace splitfusion {
+namespace {
+
+constexpr char kUsage[] =
+    "Compares results with ground truth; one of\n"
+    "  sf_evaluate --run=RUN --ground_truth=DIR\n"
+    "  sf_evaluate --run=RUN --track_query=CSV --track_output=CSV\n"
+    "  sf_evaluate --trajectory=FILE --ground_truth=FILE\n"
+    "  sf_evaluate --mesh=PLY --ground_truth_mesh=PLY\n";
+
+EvaluationOptions OptionsFromFlags() {
+  EvaluationOptions options;
+  options.trajectory.max_time_difference = FLAGS_max_time_difference;
+  options.surface.samples = FLAGS_samples;
+  options.surface.max_distance = FLAGS_max_distance;
+  options.surface.min_seen = FLAGS_min_seen;
+  if (FLAGS_label >= 0) options.surface.label = FLAGS_label;
+  options.track_frame = FLAGS_track_frame;
+  options.track_frames = FLAGS_track_frames;
+  options.Check();
+  return options;
+}
+
+/// Prints the table and writes the JSON to --output, or else to
+/// `default_path` if that is not empty.
+void Publish(const std::string& table, const nlohmann::ordered_json& json,
+             const std::string& default_path) {
+  std::cout << table;
+  const std::string& path = FLAGS_output.empty() ? default_path : FLAGS_output;
+  if (!path.empty()) WriteJson(path, json);
+}
+
+void EvaluateTrajectory(const EvaluationOptions& options) {
+  Trajectory estimate = ReadTumTrajectory(FLAGS_trajectory);
+  if (estimate.empty()) throw InputError(FLAGS_trajectory + ": no pose");
+  Trajectory truth = ReadTumTrajectory(FLAGS_ground_truth);
+  if (truth.empty()) throw InputError(FLAGS_ground_truth + ": no pose");
+  const TrajectoryError error = CompareTrajectories(
+      std::move(estimate), std::move(truth), options.trajectory);
+  Publish(FormatTable(error), ToJson(error), "");
+}
+
+void EvaluateMesh(const EvaluationOptions& options) {
+  const TriangleMesh mesh = ReadPly(FLAGS_mesh);
+  if (mesh.empty()) throw InputError(FLAGS_mesh + ": no vertex");
+  const SurfaceError error = CompareSurfaces(
+      mesh, ReadTrueSurface(FLAGS_ground_truth_mesh), options.surface);
+  Publish(FormatTable("mesh", error), ToJson(error), "");
+}
+
+void FollowQueries(const RecordedRun& run,
+                   const std::vector<AnimatedSurface>& surfaces,
+                   const EvaluationOptions& options) {
+  const FollowedPoints followed =
+      FollowPoints(run, surfaces, ReadTrackPoints(FLAGS_track_query),
+                   options.track_frames, options.attachment);
+  WriteTrackPoints(FLAGS_track_output, followed.points);
+  std::cout << FLAGS_track_output << ": " << followed.attached << " points, "
+            << followed.unattached << " that no surface is near to"
+            << (followed.by_mask ? "; surfaces by mask" : "") << '\n';
+}
+
+void EvaluateRunDirectory(const EvaluationOptions& options) {
+  RecordedRun run = ReadRun(FLAGS_run);
+  const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
+  if (!FLAGS_track_query.empty()) FollowQueries(run, surfaces, options);
+  if (FLAGS_ground_truth.empty()) return;
+  const RunEvaluation evaluation =
+      EvaluateRun(run, surfaces, ReadGroundTruth(FLAGS_ground_truth), options);
+  Publish(FormatTable(evaluation), ToJson(evaluation),
+          (std::filesystem::path(FLAGS_run) / "evaluation.json").string());
+}
+
+/// @throw InputError unless the flags are those of one of the uses.
+void CheckUsage() {
+  const auto given = [](const std::string& flag) { return !flag.empty(); };
+  const int uses = int{given(FLAGS_run)} + int{given(FLAGS_trajectory)} +
+                   int{given(FLAGS_mesh)};
+  const auto require = [](bool ok, const char* message) {
+    if (!ok) throw InputError(message);
+  };
+  require(uses == 1, "expected one of --run, --trajectory, --mesh; see --help");
+  require(given(FLAGS_track_query) == given(FLAGS_track_output),
+          "--track_query and --track_output go together");
+  require(!given(FLAGS_track_query) || given(FLAGS_run),
+          "--track_query needs --run");
+  require(!given(FLAGS_run) || given(FLAGS_ground_truth) ||
+              given(FLAGS_track_query),
+          "--run needs --ground_truth or --track_query");
+  require(!given(FLAGS_trajectory) || given(FLAGS_ground_truth),
+          "--trajectory needs --ground_truth");
+  require(given(FLAGS_mesh) == given(FLAGS_ground_truth_mesh),
+          "--mesh and --ground_truth_mesh go together");
+}
+
+int Run() {
+  CheckUsage();
+  const EvaluationOptions options = OptionsFromFlags();
+  if (!FLAGS_trajectory.empty()) {
+    EvaluateTrajectory(options);
+  } else if (!FLAGS_mesh.empty()) {
+    EvaluateMesh(options);
+  } else {
+    EvaluateRunDirectory(options);
+  }
+  return kExitDone;
+}
+
+}  // namespace
+}  // namespace splitfusion
+
+int main(int argc, char** argv) {
+  return splitfusion::ToolMain(argc, argv, splitfusion::kUsage,
+                               splitfusion::Run);
+}

@@ -1,0 +1,113 @@
+#include "tool_main.h"
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+#include <vector>
+
+#include "splitfusion/lib/base/error.h"
+
+DECLARE_bool(help);
+DECLARE_bool(helpshort);
+
+namespace GFLAGS_NAMESPACE {
+// Called by gflags with 1 after it has printed what is wrong with a flag;
+// exported by the library, but declared in none of its public headers.
+extern void (*gflags_exitfunc)(int);
+}  // namespace GFLAGS_NAMESPACE
+
+namespace splitfusion {
+namespace {
+
+constexpr std::size_t kColumns = 80;
+constexpr std::size_t kTextColumn = 28;
+
+/// Words of `text` in lines from column kTextColumn to kColumns.
+std::string Wrapped(const std::string& text) {
+  std::istringstream words(text);
+  std::string lines;
+  std::size_t column = kTextColumn;
+  for (std::string word; words >> word;) {
+    if (column > kTextColumn && column + word.size() >= kColumns) {
+      lines += "\n" + std::string(kTextColumn, ' ');
+      column = kTextColumn;
+    }
+    lines += word + " ";
+    column += word.size() + 1;
+  }
+  return lines;
+}
+
+std::string FlagHelp(const gflags::CommandLineFlagInfo& flag) {
+  std::string head = "  --" + flag.name;
+  if (!flag.default_value.empty()) head += "=" + flag.default_value;
+  if (head.size() + 2 > kTextColumn) {
+    head += "\n" + std::string(kTextColumn, ' ');
+  } else {
+    head.resize(kTextColumn, ' ');
+  }
+  return head + Wrapped(flag.description);
+}
+
+void PrintHelp(const std::string& usage) {
+  namespace fs = std::filesystem;
+  std::cout << usage;
+  std::vector<gflags::CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  const fs::path folder = fs::path(__FILE__).parent_path();
+  for (const auto& flag : flags) {
+    if (fs::path(flag.filename).parent_path() == folder) {
+      std::cout << FlagHelp(flag) << '\n';
+    }
+  }
+  std::cout << "Also --flagfile=FILE (one flag a line), --helpfull.\n";
+}
+
+/// @throw InputError if something on the command line is not a flag.
+void CheckNoArguments(int argc, char** argv) {
+  if (argc > 1) {
+    throw InputError("argument '" + std::string(argv[1]) +
+                     "': expected flags only, see --help");
+  }
+}
+
+/// False if the program was only asked for help.
+bool ParseFlags(int argc, char** argv, const std::string& usage) {
+  gflags::SetUsageMessage(usage);
+  GFLAGS_NAMESPACE::gflags_exitfunc = [](int code) {
+    std::exit(code == 0 ? kExitDone : kExitBadInput);
+  };
+  gflags::ParseCommandLineNonHelpFlags(&argc, &argv, /*remove_flags=*/true);
+  if (FLAGS_help || FLAGS_helpshort) {
+    PrintHelp(usage);
+    return false;
+  }
+  gflags::HandleCommandLineHelpFlags();
+  CheckNoArguments(argc, argv);
+  return true;
+}
+
+}  // namespace
+
+int ToolMain(int argc, char** argv, const std::string& usage,
+             const std::function<int()>& body) {
+  const std::string name = std::filesystem::path(argv[0]).filename().string();
+  FLAGS_logtostderr = true;
+  google::InitGoogleLogging(argv[0]);
+  try {
+    return ParseFlags(argc, argv, usage) ? body() : kExitDone;
+  } catch (const InputError& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": failed: " << error.what() << '\n';
+    return kExitFailure;
+  }
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,30 @@
+#ifndef SPLITFUSION_TOOLS_TOOL_MAIN_H_
+#define SPLITFUSION_TOOLS_TOOL_MAIN_H_
+
+#include <functional>
+#include <string>
+
+namespace splitfusion {
+
+/// Exit codes of all tools.
+enum ExitCode {
+  kExitDone = 0,        ///< Done.
+  kExitFailure = 1,     ///< Anything that is not one of the others.
+  kExitBadInput = 2,    ///< Bad usage or input; one line on stderr says what.
+  kExitFailedRuns = 3,  ///< A batch with failed runs.
+};
+
+/// The main() of a tool: starts glog (to stderr), parses the flags, runs `body`
+/// and turns exceptions into exit codes, InputError into kExitBadInput.
+///
+/// Unknown flags, bad values and arguments that are not flags end the program
+/// with kExitBadInput and one line on stderr. `--help` prints `usage` and the
+/// flags that are defined in this folder, and ends it with kExitDone.
+///
+/// `usage`: what the tool does and how it is called; whole lines.
+int ToolMain(int argc, char** argv, const std::string& usage,
+             const std::function<int()>& body);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_TOOLS_TOOL_MAIN_H_
