@@ -33,19 +33,31 @@ std::string Wrapped(const std::string& text) {
   std::string lines;
   std::size_t column = kTextColumn;
   for (std::string word; words >> word;) {
-    if (column > kTextColumn && column + word.size() >= kColumns) {
+    if (column + word.size() >= kColumns) {
       lines += "\n" + std::string(kTextColumn, ' ');
       column = kTextColumn;
+    } else if (column > kTextColumn) {
+      lines += ' ';
+      ++column;
     }
-    lines += word + " ";
-    column += word.size() + 1;
+    lines += word;
+    column += word.size();
   }
   return lines;
 }
 
+/// Default of a flag as one would write it: 0.3, not 0.29999999999999999.
+std::string DefaultText(const gflags::CommandLineFlagInfo& flag) {
+  if (flag.type != "double") return flag.default_value;
+  std::ostringstream text;
+  text << std::stod(flag.default_value);
+  return text.str();
+}
+
 std::string FlagHelp(const gflags::CommandLineFlagInfo& flag) {
   std::string head = "  --" + flag.name;
-  if (!flag.default_value.empty()) head += "=" + flag.default_value;
+  const std::string value = DefaultText(flag);
+  if (!value.empty()) head += "=" + value;
   if (head.size() + 2 > kTextColumn) {
     head += "\n" + std::string(kTextColumn, ' ');
   } else {
