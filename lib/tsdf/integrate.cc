@@ -9,6 +9,11 @@
 
 namespace splitfusion {
 namespace internal {
+namespace {
+
+constexpr float kFreeSpaceWeight = 1.0f;
+
+}  // namespace
 
 void VoxelUpdater::Update(const Eigen::Vector3f& p, float* distance,
                           float* weight, openvdb::Vec3s* color) const {
@@ -29,7 +34,9 @@ void VoxelUpdater::Update(const Eigen::Vector3f& p, float* distance,
   const bool in_band = role == PixelRole::kWrite && sdf >= -truncation;
   if (!in_band && sdf <= truncation) return;
   const float sample = std::min(sdf, truncation);
-  const float confidence = observation.weight(v, u);
+  // That a ray passed freely does not depend on the noise of where it ended.
+  const float confidence =
+      sdf > truncation ? kFreeSpaceWeight : observation.weight(v, u);
   const float sum = *weight + confidence;
   if (!(sum > 0)) return;
   const float blend = confidence / sum;

@@ -1,0 +1,38 @@
+#include "splitfusion/pipelines/surface_output.h"
+
+namespace splitfusion {
+namespace {
+
+/// The final mesh under the motions of one frame, camera frame.
+TriangleMesh WarpMesh(const Surface& surface, const FrameMotions& motions) {
+  DeformationGraph graph = surface.graph();
+  graph.motions = motions.motions;
+  const WarpField warp(graph);
+  TriangleMesh mesh = surface.mesh();
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Skinning& skinning = surface.mesh_skinning()[i];
+    mesh.vertices[i] = warp.WarpPoint(skinning, mesh.vertices[i]);
+    mesh.normals[i] = warp.WarpNormal(skinning, mesh.normals[i]);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+void WriteSurface(const RunPaths& paths, const Surface& surface,
+                  int warped_every) {
+  const std::string folder = paths.Surface(surface.id(), surface.label());
+  WritePly(folder + "/mesh.ply", surface.mesh());
+  surface.volume().Write(folder + "/tsdf.vdb");
+  WriteGraph(folder + "/graph.json", surface.graph(),
+             surface.options().graph.neighbors_per_point);
+  WriteMotions(folder + "/motions.bin", surface.history());
+  if (surface.is_ray_cast() || warped_every <= 0) return;
+  for (const FrameMotions& motions : surface.history().frames) {
+    if (motions.frame % warped_every != 0) continue;
+    WritePly(paths.WarpedMesh(surface.id(), surface.label(), motions.frame),
+             WarpMesh(surface, motions));
+  }
+}
+
+}  // namespace splitfusion

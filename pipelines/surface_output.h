@@ -1,0 +1,21 @@
+#ifndef SPLITFUSION_PIPELINES_SURFACE_OUTPUT_H_
+#define SPLITFUSION_PIPELINES_SURFACE_OUTPUT_H_
+
+#include "splitfusion/lib/report/run_paths.h"
+#include "splitfusion/pipelines/surface.h"
+
+namespace splitfusion {
+
+/// Writes RUN/surfaces/NNN_LABEL/{mesh.ply, tsdf.vdb, graph.json, motions.bin}
+/// and, unless the surface is the rigid background, warped/FRAME.ply for every
+/// `warped_every`-th frame since its birth (0 = none): the final mesh carried
+/// into that frame's camera, so that vertex i is the same surface point in all
+/// of them. The mesh must be up to date.
+///
+/// @throw InputError if a file cannot be written.
+void WriteSurface(const RunPaths& paths, const Surface& surface,
+                  int warped_every);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_SURFACE_OUTPUT_H_

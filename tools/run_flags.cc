@@ -1,0 +1,167 @@
+#include "run_flags.h"
+
+#include <gflags/gflags.h>
+
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/pipelines/presets.h"
+
+DEFINE_string(preset, "splitfusion",
+              "splitfusion, kinectfusion, dynamicfusion, cofusion or "
+              "background_only.");
+DEFINE_int32(first_frame, 0, "Frames before it are skipped.");
+DEFINE_int32(max_frames, 0, "Frames read at most; 0 = all.");
+DEFINE_string(intrinsics, "",
+              "fx,fy,cx,cy,width,height; replaces the calibration file.");
+DEFINE_double(depth_scale, 0, "Depth units a metre; 0 = calibration file.");
+DEFINE_double(min_depth, 0.4, "Metres; nearer depth is dropped.");
+DEFINE_double(max_depth, 5.0, "Metres; farther depth is dropped.");
+DEFINE_double(min_score, 0.4, "Detections below are ignored.");
+DEFINE_bool(rigid_objects, false, "Rigid classes get surfaces of their own.");
+DEFINE_string(terms,
+              splitfusion::PipelineOptions().terms,
+              "The energy: NAME(weight=,loss=,scale=) ...");
+DEFINE_double(prior_anneal, 8, "First factor on the priors' weights.");
+DEFINE_string(linear_solver, "auto",
+              "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
+              "or cgnr.");
+DEFINE_string(preconditioner, "jacobi", "Of cgnr: jacobi or identity.");
+DEFINE_string(trust_region, "levenberg_marquardt",
+              "levenberg_marquardt or dogleg.");
+DEFINE_int32(solver_threads, 1, "Of Ceres; more change the last digits.");
+DEFINE_int32(solver_iterations, 2, "Per association.");
+DEFINE_int32(linear_iterations, 100, "Of cgnr, per step.");
+DEFINE_double(eta, 0.01, "Of cgnr: relative accuracy of a step.");
+DEFINE_double(function_tolerance, 1e-5, "Ceres' function_tolerance.");
+DEFINE_double(gradient_tolerance, 1e-10, "Ceres' gradient_tolerance.");
+DEFINE_double(parameter_tolerance, 1e-8, "Ceres' parameter_tolerance.");
+DEFINE_double(initial_radius, 1e4, "Of the trust region.");
+DEFINE_bool(full_report, false, "Write Ceres' FullReport() of every solve.");
+DEFINE_double(rigid_distance, 0.10, "First rigid gate, metres (ends at half).");
+DEFINE_double(rigid_angle, 30, "First rigid gate, degrees (ends at 2/3).");
+DEFINE_double(non_rigid_distance, 0.10,
+              "First non-rigid gate, metres (ends at half).");
+DEFINE_double(non_rigid_angle, 45, "Non-rigid gate, degrees.");
+DEFINE_int32(neighbors_per_point, 6, "K, nodes that carry a point (Eq. 3).");
+DEFINE_int32(neighbors_per_node, 8, "Edges of a node.");
+DEFINE_double(near_spacing, 0.025, "Node spacing near the camera, metres.");
+DEFINE_double(far_spacing, 0.040, "Node spacing from 2 m on, metres.");
+DEFINE_int32(max_nodes, 2000, "Per surface.");
+DEFINE_double(background_voxel, 0.010, "Metres.");
+DEFINE_double(object_voxel, 0.005, "Metres.");
+DEFINE_double(background_truncation, 0.04, "Metres.");
+DEFINE_double(object_truncation, 0.03, "Metres.");
+DEFINE_double(max_weight, 64, "Cap of the running mean.");
+DEFINE_int32(render_stride, 2, "Model maps hold every n-th pixel.");
+
+namespace splitfusion {
+namespace {
+
+PinholeCamera ParseIntrinsics(const std::string& text) {
+  std::stringstream stream(text);
+  PinholeCamera camera;
+  char comma[5] = {};
+  if (!(stream >> camera.fx >> comma[0] >> camera.fy >> comma[1] >> camera.cx >>
+        comma[2] >> camera.cy >> comma[3] >> camera.width >> comma[4] >>
+        camera.height) ||
+      std::string(comma, 5) != ",,,,,") {
+    throw InputError("--intrinsics=" + text +
+                     ": expected fx,fy,cx,cy,width,height");
+  }
+  camera.Check();
+  return camera;
+}
+
+void SetGates(TrackerOptions* tracker) {
+  const double radians = M_PI / 180;
+  const double shrink[] = {1.0, 0.7, 0.5};
+  const double turn[] = {1.0, 5.0 / 6, 2.0 / 3};
+  for (std::size_t i = 0; i < tracker->rigid.size(); ++i) {
+    AssociationGates& gates = tracker->rigid[i].gates;
+    gates.distance = FLAGS_rigid_distance * shrink[i];
+    gates.normal_angle = FLAGS_rigid_angle * radians * turn[i];
+  }
+  for (std::size_t i = 0; i < tracker->non_rigid.size(); ++i) {
+    AssociationGates& gates = tracker->non_rigid[i].gates;
+    gates.distance = FLAGS_non_rigid_distance * (i == 0 ? 1.0 : 0.5);
+    gates.normal_angle = FLAGS_non_rigid_angle * radians;
+  }
+  tracker->prior_anneal = FLAGS_prior_anneal;
+}
+
+void SetSolver(SolverOptions* solver) {
+  solver->linear_solver = FLAGS_linear_solver;
+  solver->preconditioner = FLAGS_preconditioner;
+  solver->trust_region = FLAGS_trust_region;
+  solver->threads = FLAGS_solver_threads;
+  solver->max_iterations = FLAGS_solver_iterations;
+  solver->max_linear_solver_iterations = FLAGS_linear_iterations;
+  solver->eta = FLAGS_eta;
+  solver->function_tolerance = FLAGS_function_tolerance;
+  solver->gradient_tolerance = FLAGS_gradient_tolerance;
+  solver->parameter_tolerance = FLAGS_parameter_tolerance;
+  solver->initial_radius = FLAGS_initial_radius;
+  solver->full_report = FLAGS_full_report;
+}
+
+void SetModel(PipelineOptions* options) {
+  GraphOptions graph;
+  graph.neighbors_per_point = FLAGS_neighbors_per_point;
+  graph.neighbors_per_node = FLAGS_neighbors_per_node;
+  graph.near_spacing = FLAGS_near_spacing;
+  graph.far_spacing = FLAGS_far_spacing;
+  graph.max_nodes = FLAGS_max_nodes;
+  options->background.graph = graph;
+  options->object.graph = graph;
+  options->background.tsdf = {FLAGS_background_voxel,
+                              FLAGS_background_truncation, FLAGS_max_weight};
+  options->object.tsdf = {FLAGS_object_voxel, FLAGS_object_truncation,
+                          FLAGS_max_weight};
+}
+
+}  // namespace
+
+TumReaderOptions ReaderOptionsFromFlags() {
+  TumReaderOptions options;
+  options.first_frame = FLAGS_first_frame;
+  options.max_frames = FLAGS_max_frames;
+  options.depth_scale = FLAGS_depth_scale;
+  options.depth_filter.min_depth = FLAGS_min_depth;
+  options.depth_filter.max_depth = FLAGS_max_depth;
+  if (!FLAGS_intrinsics.empty()) {
+    options.camera = ParseIntrinsics(FLAGS_intrinsics);
+  }
+  options.Check();
+  return options;
+}
+
+PipelineOptions PipelineOptionsFromFlags() {
+  PipelineOptions options;
+  ApplyPreset(FLAGS_preset, &options);
+  options.split.min_score = FLAGS_min_score;
+  options.split.rigid_objects = FLAGS_rigid_objects;
+  options.terms = FLAGS_terms;
+  options.render_stride = FLAGS_render_stride;
+  SetGates(&options.tracker);
+  SetSolver(&options.solver);
+  SetModel(&options);
+  options.Check();
+  return options;
+}
+
+std::string FlagfileText() {
+  std::vector<gflags::CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  std::string text;
+  for (const gflags::CommandLineFlagInfo& flag : flags) {
+    const bool ours = flag.filename.find("tools/sf_run") != std::string::npos ||
+                      flag.filename.find("run_flags") != std::string::npos;
+    if (ours) text += "--" + flag.name + "=" + flag.current_value + "\n";
+  }
+  return text;
+}
+
+}  // namespace splitfusion

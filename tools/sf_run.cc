@@ -1,0 +1,169 @@
+// Runs SplitFusion on one RGB-D sequence and writes a run directory.
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "run_flags.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/energy/blas_threads.h"
+#include "splitfusion/lib/report/frame_pictures.h"
+#include "splitfusion/lib/report/library_versions.h"
+#include "splitfusion/lib/report/run_directory.h"
+#include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/pipelines/split_fusion.h"
+#include "splitfusion/pipelines/surface_output.h"
+#include "tool_main.h"
+
+DEFINE_string(sequence, "", "Folder of the sequence, TUM RGB-D layout.");
+DEFINE_string(output, "", "Run directory to write.");
+DEFINE_bool(overwrite, false, "Replace an earlier run in --output.");
+DEFINE_string(masks, "auto",
+              "Folder of instance masks, none, or auto: masks_noisy or mask "
+              "beside the sequence.");
+DEFINE_string(mask_kind, "non_rigid",
+              "Of masks without classes: non_rigid or rigid.");
+DEFINE_string(labels, "", "File `class, rigid|non_rigid` a line.");
+DEFINE_int32(threads, 2, "Threads of all but Ceres.");
+DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
+DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
+DEFINE_bool(write_masks, false, "Write refined masks of every frame.");
+DECLARE_string(preset);
+
+namespace splitfusion {
+namespace {
+
+std::shared_ptr<Segmenter> MakeSegmenter() {
+  std::string folder = FLAGS_masks;
+  if (folder == "auto") folder = FindMaskFolder(FLAGS_sequence);
+  if (folder.empty() || folder == "none") return nullptr;
+  CheckOption(FLAGS_mask_kind == "rigid" || FLAGS_mask_kind == "non_rigid",
+              "--mask_kind", FLAGS_mask_kind, "rigid or non_rigid");
+  return std::make_shared<MaskFolderSegmenter>(
+      folder,
+      FLAGS_mask_kind == "rigid" ? kUnnamedRigidClass : kUnnamedClass);
+}
+
+/// One run: frames in, run directory out.
+class Run {
+ public:
+  Run()
+      : reader_(FLAGS_sequence, ReaderOptionsFromFlags()),
+        fusion_(reader_.camera(), PipelineOptionsFromFlags(),
+                FLAGS_labels.empty() ? LabelTable()
+                                     : LabelTable::FromFile(FLAGS_labels),
+                MakeSegmenter()),
+        directory_(FLAGS_output, FLAGS_overwrite,
+                   {FLAGS_preset, FlagfileText(), LibraryVersions()}) {}
+
+  void Execute() {
+    try {
+      while (ProcessNext()) {
+      }
+    } catch (const InputError&) {
+      // A broken frame ends the run; what was computed until then is kept.
+      std::fputs(isatty(STDERR_FILENO) ? "\n" : "", stderr);
+      WriteResults();
+      throw;
+    }
+    WriteResults();
+  }
+
+ private:
+  bool ProcessNext() {
+    const Stopwatch reading;
+    const std::optional<Frame> frame = reader_.Next();
+    if (!frame) return false;
+    const double read_seconds = reading.Seconds();
+    FrameReport report = fusion_.ProcessFrame(*frame);
+    report.read_seconds = read_seconds;
+    report.total_seconds += read_seconds;
+    directory_.AddFrame(report, fusion_.trajectory().back());
+    for (const SurfaceReport& surface : report.surfaces) {
+      if (surface.state != "lost") continue;
+      LOG(WARNING) << "frame " << report.frame << ": surface " << surface.id
+                   << " (" << surface.label << ") lost: " << surface.reason;
+    }
+    const Stopwatch writing;
+    WritePictures(*frame, report.frame);
+    directory_.AddWritingSeconds(writing.Seconds());
+    ++done_;
+    PrintProgress();
+    return true;
+  }
+
+  void WritePictures(const Frame& frame, int index) const {
+    if (FLAGS_write_masks) {
+      WriteMask(directory_.paths(), frame.stem, fusion_.labels());
+    }
+    if (FLAGS_pictures_every <= 0 || index % FLAGS_pictures_every != 0) return;
+    const SceneRendering scene =
+        RenderScene(fusion_.surfaces(), fusion_.camera(),
+                    fusion_.options().ray_cast);
+    cv::Mat depth;
+    cv::extractChannel(scene.map.points, depth, 2);
+    WriteFramePictures(directory_.paths(), index,
+                       {frame.color, frame.depth, fusion_.labels(),
+                        scene.map.color, depth, scene.map.normals});
+  }
+
+  void WriteResults() {
+    const Stopwatch writing;
+    fusion_.Finish();
+    for (const auto& [id, surface] : fusion_.surfaces()) {
+      WriteSurface(directory_.paths(), *surface, FLAGS_warped_every);
+      directory_.SetSurfaceSize(
+          id, surface->graph().size(),
+          static_cast<int>(surface->mesh().vertices.size()));
+    }
+    directory_.AddWritingSeconds(writing.Seconds());
+    directory_.Finish();
+  }
+
+  void PrintProgress() const {
+    if (!isatty(STDERR_FILENO)) return;
+    const double left =
+        since_start_.Seconds() / done_ * (reader_.size() - done_);
+    std::fprintf(stderr, "\r\033[Kframe %d/%d, %zu surfaces, %.0f s left",
+                 done_, reader_.size(), fusion_.surfaces().size(), left);
+    if (done_ == reader_.size()) std::fputc('\n', stderr);
+  }
+
+  TumReader reader_;
+  SplitFusion fusion_;
+  RunDirectory directory_;
+  Stopwatch since_start_;
+  int done_ = 0;
+};
+
+int RunSequence() {
+  CheckOption(!FLAGS_sequence.empty(), "--sequence", "''",
+              "the folder of a sequence");
+  CheckOption(!FLAGS_output.empty(), "--output", "''", "a folder to write");
+  CheckOption(FLAGS_threads >= 1, "--threads", FLAGS_threads, ">= 1");
+  const tbb::global_control threads(
+      tbb::global_control::max_allowed_parallelism,
+      static_cast<std::size_t>(FLAGS_threads));
+  SetBlasThreads(1);
+  Run().Execute();
+  return kExitDone;
+}
+
+}  // namespace
+}  // namespace splitfusion
+
+int main(int argc, char** argv) {
+  return splitfusion::ToolMain(
+      argc, argv,
+      "Tracks and maps the rigid and non-rigid surfaces of an RGB-D sequence.\n"
+      "sf_run --sequence=DIR --output=RUN [--masks=DIR|none] [--preset=NAME]",
+      splitfusion::RunSequence);
+}
