@@ -45,6 +45,9 @@ void PipelineOptions::Check() const {
                       std::to_string(render_stride) + ")");
     }
   }
+  CheckOption(min_birth_area >= 0 && min_birth_area < 1, "min_birth_area",
+              min_birth_area, "a fraction of the image");
+  CheckOption(max_lost_young >= 1, "max_lost_young", max_lost_young, ">= 1");
   CheckOption(min_tracked_pixels >= 1, "min_tracked_pixels",
               min_tracked_pixels, ">= 1");
 }
@@ -75,6 +78,7 @@ FrameReport SplitFusion::ProcessFrame(const Frame& frame) {
     TrackBackground(&report);
     TrackObjects(&report);
     Fuse(&report);
+    RestartLostSurfaces(&report);
   }
   AddNewSurfaces(frame, &report);
   Record(frame, &report);
@@ -168,6 +172,26 @@ void SplitFusion::Fuse(FrameReport* report) {
   }
 }
 
+void SplitFusion::RestartLostSurfaces(FrameReport* report) {
+  for (SurfaceReport& lost : report->surfaces) {
+    int& on_end = lost_on_end_[lost.id];
+    on_end = lost.state == "lost" ? on_end + 1 : 0;
+    if (lost.id == 0 || on_end < options_.max_lost_young) continue;
+    int tracked = 0;
+    for (const FrameMotions& motions : surfaces_.at(lost.id)->history().frames) {
+      tracked += motions.tracked;
+    }
+    if (tracked > options_.max_lost_young) continue;
+    lost.label = surfaces_.at(lost.id)->label();
+    lost.kind = surfaces_.at(lost.id)->kind();
+    surfaces_.erase(lost.id);
+    velocities_.erase(lost.id);
+    last_world_from_canonical_.erase(lost.id);
+    on_end = 0;
+    lost.state = "dropped";
+  }
+}
+
 void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
   const auto add = [&](int id, const std::string& label, SurfaceKind kind) {
     auto surface = std::make_unique<Surface>(
@@ -189,10 +213,12 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
   }
   if (!options_.model_objects) return;
   const std::map<int, int> pixels = CountPixels(live_);
+  const double min_pixels =
+      options_.min_birth_area * camera_.width * camera_.height;
   for (const auto& [id, instance] : splitter_.instances()) {
     const auto seen = pixels.find(id);
     if (surfaces_.count(id) != 0 || seen == pixels.end() ||
-        seen->second < options_.min_tracked_pixels) {
+        seen->second < min_pixels) {
       continue;
     }
     add(id, instance.class_name,
@@ -206,6 +232,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   trajectory_.push_back({frame.timestamp, world_from_camera});
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
+    if (surface_report.state == "dropped") continue;
     Surface& surface = *surfaces_.at(id);
     const auto seen = pixels.find(id);
     surface_report.pixels = seen == pixels.end() ? 0 : seen->second;

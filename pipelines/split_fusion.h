@@ -32,6 +32,11 @@ struct PipelineOptions {
   bool deform_objects = true;   ///< False: moving things are rigid.
   bool deform_background = false;  ///< True: surface 0 is non-rigid.
   int min_tracked_pixels = 400;    ///< Fewer live pixels: surface is unseen.
+  /// Fraction of the image a surface has to cover before it is modelled.
+  double min_birth_area = 0.008;
+  /// A surface that is lost in as many frames on end, with no more frames
+  /// tracked than that, begins anew.
+  int max_lost_young = 5;
 
   PipelineOptions();
   /// @throw InputError if a value is out of its range.
@@ -67,6 +72,7 @@ class SplitFusion {
   void TrackBackground(FrameReport* report);
   void TrackObjects(FrameReport* report);
   void Fuse(FrameReport* report);
+  void RestartLostSurfaces(FrameReport* report);
   void AddNewSurfaces(const Frame& frame, FrameReport* report);
   void Record(const Frame& frame, FrameReport* report);
   Rigid3d WorldFromCamera() const;
@@ -84,6 +90,7 @@ class SplitFusion {
   /// the background): the constant-velocity prediction.
   std::map<int, Rigid3d> velocities_;
   std::map<int, Rigid3d> last_world_from_canonical_;
+  std::map<int, int> lost_on_end_;  ///< Frames, by surface.
 };
 
 }  // namespace splitfusion

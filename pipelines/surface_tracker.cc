@@ -39,6 +39,49 @@ double ResidualRms(const std::vector<Correspondence>& correspondences,
   return correspondences.empty() ? 0 : std::sqrt(sum / correspondences.size());
 }
 
+/// Translation that brings the centroid of the warped samples to that of the
+/// surface's live points.
+Rigid3d MotionOfCentroids(const std::vector<ModelSample>& samples,
+                          const LiveView& live, std::uint16_t surface,
+                          const DeformationGraph& graph) {
+  const WarpField warp(graph);
+  Eigen::Vector3d model = Eigen::Vector3d::Zero();
+  for (const ModelSample& sample : samples) {
+    model += warp.WarpPoint(sample.skinning, sample.point).cast<double>();
+  }
+  Eigen::Vector3d seen = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (int v = 0; v < live.depth.rows; ++v) {
+    for (int u = 0; u < live.depth.cols; ++u) {
+      if (live.labels(v, u) != surface || !(live.depth(v, u) > 0)) continue;
+      const cv::Vec3f& p = live.map.points(v, u);
+      seen += Eigen::Vector3d(p[0], p[1], p[2]);
+      ++count;
+    }
+  }
+  Rigid3d motion = Rigid3d::Identity();
+  if (count > 0 && !samples.empty()) {
+    motion.translation() =
+        seen / count - model / static_cast<double>(samples.size());
+  }
+  return motion;
+}
+
+/// The stage at half its stride as often as a small surface needs.
+TrackingStage FittedStage(const TrackingStage& stage, int min_samples,
+                          const std::vector<ModelSample>& samples) {
+  TrackingStage fitted = stage;
+  while (fitted.stride % 2 == 0) {
+    int count = 0;
+    for (const ModelSample& sample : samples) {
+      count += sample.u % fitted.stride == 0 && sample.v % fitted.stride == 0;
+    }
+    if (count >= min_samples) break;
+    fitted.stride /= 2;
+  }
+  return fitted;
+}
+
 int TotalRounds(const std::vector<TrackingStage>& stages) {
   int rounds = 0;
   for (const TrackingStage& stage : stages) rounds += stage.rounds;
@@ -75,6 +118,7 @@ void TrackerOptions::Check() const {
   CheckOption(settled >= 0, "settled", settled, ">= 0");
   CheckOption(min_correspondences >= 6, "min_correspondences",
               min_correspondences, ">= 6");
+  CheckOption(min_samples >= 0, "min_samples", min_samples, ">= 0");
   CheckOption(min_accepted >= 0 && min_accepted <= 1, "min_accepted",
               min_accepted, "0..1");
   CheckOption(max_translation > 0, "max_translation", max_translation,
@@ -96,16 +140,32 @@ void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
                            DeformationGraph* graph,
                            SurfaceReport* report) const {
   const DeformationGraph predicted = *graph;
+  bool tracked = TrackFrom(predicted, samples, live, surface, graph, report);
+  if (!tracked && surface != 0) {
+    DeformationGraph moved = predicted;
+    ApplyRigidMotion(MotionOfCentroids(samples, live, surface, predicted),
+                     &moved);
+    tracked = TrackFrom(moved, samples, live, surface, graph, report);
+  }
+  report->state = tracked ? "tracked" : "lost";
+  if (!tracked) *graph = predicted;
+}
+
+bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
+                               const std::vector<ModelSample>& samples,
+                               const LiveView& live, std::uint16_t surface,
+                               DeformationGraph* graph,
+                               SurfaceReport* report) const {
+  *graph = start;
   TrackRigid(samples, live, surface, graph, report);
   const Rigid3d motion =
-      MeanRigidMotion(*graph) * MeanRigidMotion(predicted).inverse();
+      MeanRigidMotion(*graph) * MeanRigidMotion(start).inverse();
   report->reason = ReasonForLoss(motion, *report);
   if (report->reason.empty() && !graph->rigid()) {
     TrackNonRigid(samples, live, surface, graph, report);
     report->reason = ReasonForLoss(motion, *report);
   }
-  report->state = report->reason.empty() ? "tracked" : "lost";
-  if (!report->reason.empty()) *graph = predicted;
+  return report->reason.empty();
 }
 
 void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
@@ -119,8 +179,10 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
     if (!graph->rigid() && stage.stride < options_.non_rigid.front().stride) {
       break;
     }
+    const TrackingStage fitted =
+        FittedStage(stage, options_.min_samples, samples);
     for (int round = 0; round < stage.rounds; ++round) {
-      if (RunRound(warped, live, surface, stage, "rigid", 1.0, &motion,
+      if (RunRound(warped, live, surface, fitted, "rigid", 1.0, &motion,
                    report)) {
         break;
       }
@@ -136,10 +198,12 @@ void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
   const int total = TotalRounds(options_.non_rigid);
   int done = 0;
   for (const TrackingStage& stage : options_.non_rigid) {
+    const TrackingStage fitted =
+        FittedStage(stage, options_.min_samples, samples);
     for (int round = 0; round < stage.rounds; ++round, ++done) {
       const double progress = total > 1 ? done / (total - 1.0) : 1.0;
       const double factor = std::pow(options_.prior_anneal, 1 - progress);
-      const bool settled = RunRound(samples, live, surface, stage, "non_rigid",
+      const bool settled = RunRound(samples, live, surface, fitted, "non_rigid",
                                     factor, graph, report);
       if (settled && progress >= 1) return;
     }
@@ -180,8 +244,7 @@ std::string SurfaceTracker::ReasonForLoss(const Rigid3d& motion,
   if (report.rounds.empty()) return "no model in view";
   const TrackingRound& last = report.rounds.back();
   const AssociationCounts& counts = last.association;
-  const int area = last.stride * last.stride;
-  if (counts.accepted * area < options_.min_correspondences * 16) {
+  if (counts.accepted < options_.min_correspondences) {
     return "only " + std::to_string(counts.accepted) +
            " correspondences at stride " + std::to_string(last.stride);
   }

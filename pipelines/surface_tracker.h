@@ -27,14 +27,18 @@ struct TrackerOptions {
   double prior_anneal = 8;
   /// A stage ends when the cost changes by less than this fraction.
   double settled = 2e-3;
-  /// Lost below as many correspondences of the last round ...
-  int min_correspondences = 200;
+  /// Lost below as many correspondences in the last round ...
+  int min_correspondences = 60;
   /// ... or below this fraction of the samples that meet live depth of the
   /// surface ...
   double min_accepted = 0.25;
   /// ... or if the surface moved farther than predicted by this much.
   double max_translation = 0.35;  ///< Metres.
   double max_rotation = 0.6;      ///< Radians.
+
+  /// A surface with fewer samples than this at a stage's stride is tracked at
+  /// half of it, down to the model map's own.
+  int min_samples = 1500;
 
   /// Stages that hold for room-sized and person-sized scenes.
   static TrackerOptions Defaults();
@@ -52,13 +56,18 @@ class SurfaceTracker {
   SurfaceTracker(TrackerOptions options, SolverOptions solver, Energy energy);
 
   /// Moves the graph, which comes in at the predicted motions, so that the
-  /// samples lie on the live pixels of `surface`. A frame that fails leaves the
+  /// samples lie on the live pixels of `surface`. If that fails, an object is
+  /// tried again from where its live pixels are. A frame that fails leaves the
   /// graph as it came; the report's state is then "lost" and says why.
   void Track(const std::vector<ModelSample>& samples, const LiveView& live,
              std::uint16_t surface, DeformationGraph* graph,
              SurfaceReport* report) const;
 
  private:
+  bool TrackFrom(const DeformationGraph& start,
+                 const std::vector<ModelSample>& samples, const LiveView& live,
+                 std::uint16_t surface, DeformationGraph* graph,
+                 SurfaceReport* report) const;
   void TrackRigid(const std::vector<ModelSample>& samples, const LiveView& live,
                   std::uint16_t surface, DeformationGraph* graph,
                   SurfaceReport* report) const;

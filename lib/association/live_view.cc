@@ -13,27 +13,56 @@ namespace {
 
 constexpr int kEdgeRadius = 2;  // Pixels.
 
-/// Jump of depth that is an edge: more than noise or a slanted surface gives.
-float EdgeJump(float depth) { return 0.015f * depth + 3 * DepthSigma(depth); }
+/// Jump of depth between pixels `step` apart that is an edge: more than noise
+/// or a surface seen at 79 degrees (tan = 5) gives.
+float EdgeJump(float depth, int step, float focal_length) {
+  return 0.005f + 3 * DepthSigma(depth) + 5 * depth * step / focal_length;
+}
+
+/// Fills pixels without depth whose neighbours agree: single lost pixels would
+/// leave holes as wide as a voxel where the camera stands still.
+cv::Mat_<float> WithoutPinholes(const cv::Mat_<float>& depth,
+                                float focal_length) {
+  cv::Mat_<float> filled = depth.clone();
+  for (int v = 1; v + 1 < depth.rows; ++v) {
+    for (int u = 1; u + 1 < depth.cols; ++u) {
+      if (depth(v, u) > 0) continue;
+      float sum = 0, low = 1e9f, high = 0;
+      int count = 0;
+      for (int k = 0; k < 9; ++k) {
+        const float z = depth(v + k / 3 - 1, u + k % 3 - 1);
+        if (!(z > 0)) continue;
+        sum += z, ++count;
+        low = std::min(low, z), high = std::max(high, z);
+      }
+      if (count >= 6 && high - low < EdgeJump(low, 2, focal_length)) {
+        filled(v, u) = sum / count;
+      }
+    }
+  }
+  return filled;
+}
 
 /// 255 where a pixel lies next to a jump of depth (either side of it).
-cv::Mat_<std::uint8_t> DepthEdges(const cv::Mat_<float>& depth) {
+cv::Mat_<std::uint8_t> DepthEdges(const cv::Mat_<float>& depth,
+                                  float focal_length) {
   cv::Mat_<std::uint8_t> edges(depth.size(), 0);
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 0; u < depth.cols; ++u) {
       const float z = depth(v, u);
       if (!(z > 0)) continue;
-      const auto compare = [&](int v2, int u2) {
+      const auto compare = [&](int v2, int u2, int step) {
         if (v2 >= depth.rows || u2 >= depth.cols) return;
         const float other = depth(v2, u2);
-        if (other > 0 && std::abs(other - z) > EdgeJump(std::min(z, other))) {
+        if (other > 0 && std::abs(other - z) >
+                             EdgeJump(std::min(z, other), step, focal_length)) {
           edges(v, u) = edges(v2, u2) = 255;
         }
       };
       // Two pixels away too: edges come with a column of holes.
       for (int step = 1; step <= 2; ++step) {
-        compare(v, u + step);
-        compare(v + step, u);
+        compare(v, u + step, step);
+        compare(v + step, u, step);
       }
     }
   }
@@ -54,12 +83,17 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
                      std::to_string(depth.cols) + "x" +
                      std::to_string(depth.rows));
   }
+  if (depth.type() != CV_32FC1) {
+    throw InputError("depth image is of type " + std::to_string(depth.type()) +
+                     ": expected CV_32FC1");
+  }
   LiveView view;
   view.camera = camera;
-  view.map = ComputePointMap(depth, camera);
+  const float focal_length = static_cast<float>(camera.fx);
+  view.depth = WithoutPinholes(depth, focal_length);
+  view.map = ComputePointMap(view.depth, camera);
   view.color = color;
-  view.depth = depth;
-  view.edges = DepthEdges(view.depth);
+  view.edges = DepthEdges(view.depth, focal_length);
   view.labels.create(depth.size());
   view.labels.setTo(0);
   view.uncertain.create(depth.size());

@@ -14,7 +14,7 @@ struct LiveView {
   PinholeCamera camera;
   PointMap map;                   ///< Points and normals, camera frame.
   cv::Mat color;                  ///< 8UC3, BGR.
-  cv::Mat_<float> depth;          ///< Metres, 0 = none.
+  cv::Mat_<float> depth;          ///< Metres, 0 = none; pinholes filled.
   cv::Mat_<float> confidence;     ///< (sigma_0 / sigma(z))^2 at most 1, times
                                   ///< the cosine of the viewing angle.
   cv::Mat_<std::uint8_t> edges;   ///< 255 within 2 px of a depth edge.

@@ -26,7 +26,8 @@ struct SurfaceReport {
   std::string label;                       ///< Class name.
   SurfaceKind kind = SurfaceKind::kRigid;  ///< How it is tracked.
   /// "tracked", "born", "lost" (a frame that failed; motion kept, nothing
-  /// fused) or "unseen" (not in view).
+  /// fused), "unseen" (not in view) or "dropped" (a young surface that was lost
+  /// too often and begins anew).
   std::string state;
   std::string reason;       ///< Why lost; empty otherwise.
   int pixels = 0;           ///< Live pixels with depth of this surface.
