@@ -15,6 +15,9 @@ namespace {
 /// taken for one.
 constexpr int kCoveredFrames = 3;
 
+/// So early hardly any background is mapped that could speak against a birth.
+constexpr int kEarlyFrames = 10;
+
 SplitDecision MakeDecision(const std::string& action, const Segment& segment) {
   return {action, segment.surface, segment.class_name, segment.score,
           segment.iou};
@@ -243,12 +246,13 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
                                   const cv::Mat_<uchar>& pixels,
                                   const Work& work) {
   const int hits = births_.Add(work.frame.index, segment.mask);
-  if (last_.labels.empty() && segment.score >= options_.confident_score) {
+  if (frames_ == 1 && segment.score >= options_.confident_score) {
     return true;
   }
   const cv::Mat mapped = pixels & (work.prior.labels == 0) &
                          (work.agreement == static_cast<int>(Agreement::kSame));
   const bool was_background =
+      frames_ > kEarlyFrames &&
       2 * cv::countNonZero(mapped) > cv::countNonZero(pixels);
   return hits >= options_.birth_frames * (was_background ? 2 : 1);
 }
@@ -333,6 +337,7 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                                    const std::vector<InstanceMask>& detections,
                                    const SurfacePrediction& prediction) {
   CheckSizes(frame, detections, prediction);
+  ++frames_;
   Work work{frame, points, ComposePrior(prediction), {}, {}, {}, {}, {}};
   work.agreement = CompareDepth(frame.depth, work.prior, options_.prior);
   work.unconfirmed.create(frame.depth.size());

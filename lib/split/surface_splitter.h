@@ -132,6 +132,7 @@ class SurfaceSplitter {
   InstanceRegistry registry_;
   BirthQueue births_;
   MaskSupport support_;
+  int frames_ = 0;  // Split so far, the current one included.
   SurfacePrediction last_;  // Labels and live depth of the frame before.
 };
 
