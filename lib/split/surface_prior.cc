@@ -99,7 +99,7 @@ class Evidence {
       case Agreement::kFarther:
         return own ? -MovedAwayWeight(v, u) : 0.0;
       case Agreement::kNearer:
-        return label == 0 ? options_.unexplained_weight : 0.0;
+        return own || label == 0 ? options_.unexplained_weight : 0.0;
       default:
         return 0.0;
     }
