@@ -21,8 +21,8 @@ step "sf_synth --output=$sequence"
 "$bin/sf_synth" --output="$sequence"
 step "sf_run --sequence=$sequence --output=$run $*"
 "$bin/sf_run" --sequence="$sequence" --output="$run" "$@"
-step "sf_evaluate --run=$run --ground_truth=$sequence"
-"$bin/sf_evaluate" --run="$run" --ground_truth="$sequence"
+step "sf_evaluate --run=$run --ground_truth=$sequence/gt"
+"$bin/sf_evaluate" --run="$run" --ground_truth="$sequence/gt"
 
 cat <<END
 

@@ -71,9 +71,8 @@ void PrintHelp(const std::string& usage) {
   std::cout << usage;
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
-  const fs::path folder = fs::path(__FILE__).parent_path();
   for (const auto& flag : flags) {
-    if (fs::path(flag.filename).parent_path() == folder) {
+    if (fs::path(flag.filename).parent_path().filename() == "tools") {
       std::cout << FlagHelp(flag) << '\n';
     }
   }

@@ -13,7 +13,7 @@ struct GraphCutOptions {
   int outer_dilation = 12;  ///< Pixels; beyond it is surely background.
   /// A step between neighbours of this many times the axial noise (plus
   /// `step_offset`, metres) lowers their edge to 1/e.
-  double step_factor = 2.0;
+  double step_factor = 3.0;
   double step_offset = 0.003;  ///< Metres.
   /// 1 - cos of the angle between the neighbours' normals that lowers their
   /// edge to 1/e where the surface is concave (two things that touch) ...

@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "splitfusion/lib/split/surface_prediction.h"
@@ -20,6 +21,8 @@ enum class Trust {
 struct Candidate {
   cv::Mat_<uchar> mask;  ///< HxW, 255 inside.
   Trust trust = Trust::kFull;
+  std::string class_name;
+  double score = 1;  ///< 0..1.
 };
 
 /// How detections are matched to projected surfaces.

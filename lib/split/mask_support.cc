@@ -6,6 +6,7 @@ namespace splitfusion {
 namespace {
 
 constexpr double kNewest = 0.25;  // Weight of the newest detection.
+constexpr float kUnknown = 0.5f;  // Support before the first detection.
 constexpr int kReach = 7;         // Pixels over which the support is spread.
 
 cv::Point2d Center(const cv::Mat& mask) {
@@ -27,7 +28,7 @@ cv::Mat_<T> Shifted(const cv::Mat_<T>& image, const cv::Point2d& shift) {
 
 cv::Mat_<float> MaskSupport::Predict(int surface,
                                      const LabelImage& predicted_labels) const {
-  cv::Mat_<float> result(predicted_labels.size(), 1.0f);
+  cv::Mat_<float> result(predicted_labels.size(), kUnknown);
   const auto found = states_.find(surface);
   const cv::Mat predicted = predicted_labels == surface;
   if (found == states_.end() || cv::countNonZero(predicted) == 0) {

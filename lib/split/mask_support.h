@@ -15,7 +15,7 @@ class MaskSupport {
  public:
   /// Share 0..1 of the recent detections of `surface` that covered a pixel,
   /// HxW; carried over by the mean image motion between the labels of the last
-  /// Update() and `predicted_labels`. 1 where nothing is known.
+  /// Update() and `predicted_labels`. 0.5 where nothing is known.
   cv::Mat_<float> Predict(int surface,
                           const LabelImage& predicted_labels) const;
 

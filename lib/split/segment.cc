@@ -72,6 +72,11 @@ void FillWithoutDepth(const cv::Rect& crop, const cv::Mat_<uchar>& outline,
 
 }  // namespace
 
+SplitDecision MakeDecision(const std::string& action, const Segment& segment) {
+  return {action, segment.surface, segment.class_name, segment.score,
+          segment.iou};
+}
+
 LabelImage ComposeSegments(const std::vector<Segment>& segments,
                            const LabelImage& predicted_labels,
                            const cv::Mat& depth) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/split/split_result.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 #include "splitfusion/lib/split/surface_prior.h"
 
@@ -20,6 +21,9 @@ struct Segment {
   SurfaceEvidence evidence;
   cv::Mat_<uchar> foreground;  ///< Cut, size of evidence.crop, 255 inside.
 };
+
+/// The decision `action` on a segment.
+SplitDecision MakeDecision(const std::string& action, const Segment& segment);
 
 /// Joins the cuts of all segments: HxW, 1 + index of the segment that a pixel
 /// belongs to, 0 = none. Where two claim a pixel the stronger evidence wins.

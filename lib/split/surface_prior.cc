@@ -52,6 +52,7 @@ class Evidence {
         agreement_(agreement(crop)),
         cut_(cut),
         options_(options) {
+    if (detected_) mask_ = observation.mask(crop);
     if (!observation.others.empty()) others_ = observation.others(crop);
     if (!observation.support.empty()) support_ = observation.support(crop);
   }
@@ -96,10 +97,19 @@ class Evidence {
         return label == 0 ? -options_.background_weight
                           : -options_.prediction_weight;
       case Agreement::kFarther:
-        return own ? -options_.prediction_weight : 0.0;
+        return own ? -MovedAwayWeight(v, u) : 0.0;
+      case Agreement::kNearer:
+        return own || label == 0 ? options_.unexplained_weight : 0.0;
       default:
         return 0.0;
     }
+  }
+
+  /// Behind the projection lies either what the surface uncovered or, inside
+  /// of the detection, another part of the same surface.
+  double MovedAwayWeight(int v, int u) const {
+    if (!detected_) return 0.5 * options_.prediction_weight;
+    return mask_(v, u) ? 0.0 : options_.prediction_weight;
   }
 
   /// The projection counts fully where most detections agreed with it.
@@ -112,6 +122,7 @@ class Evidence {
   const bool detected_;
   const LabelImage labels_;
   const cv::Mat_<uchar> agreement_;
+  cv::Mat_<uchar> mask_;
   cv::Mat_<uchar> others_;
   cv::Mat_<float> support_;
   const GraphCutOptions& cut_;
@@ -127,6 +138,8 @@ void PriorOptions::Check() const {
               "prediction_weight", prediction_weight, "0..4");
   CheckOption(background_weight >= 0 && background_weight <= 4,
               "background_weight", background_weight, "0..4");
+  CheckOption(unexplained_weight >= 0 && unexplained_weight <= 4,
+              "unexplained_weight", unexplained_weight, "0..4");
   CheckOption(missed_weight >= 0 && missed_weight <= 4, "missed_weight",
               missed_weight, "0..4");
   CheckOption(surface_gate > 0, "surface_gate", surface_gate,

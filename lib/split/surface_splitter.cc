@@ -3,9 +3,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/split/detection_screen.h"
+#include "splitfusion/lib/split/instance_matcher.h"
 #include "splitfusion/lib/split/surface_contact.h"
 
 namespace splitfusion {
@@ -15,10 +20,8 @@ namespace {
 /// taken for one.
 constexpr int kCoveredFrames = 3;
 
-SplitDecision MakeDecision(const std::string& action, const Segment& segment) {
-  return {action, segment.surface, segment.class_name, segment.score,
-          segment.iou};
-}
+/// So early hardly any background is mapped that could speak against a birth.
+constexpr int kEarlyFrames = 10;
 
 void CheckSize(const std::string& name, const cv::Mat& image,
                const PinholeCamera& camera) {
@@ -39,26 +42,6 @@ int CountWithDepth(const cv::Mat& pixels, const cv::Mat& depth) {
 
 }  // namespace
 
-void SplitOptions::Check() const {
-  graph_cut.Check();
-  prior.Check();
-  uncertain.Check();
-  CheckOption(min_score >= 0 && min_score <= 1, "min_score", min_score, "0..1");
-  CheckOption(max_area > 0 && max_area <= 1, "max_area", max_area,
-              "a fraction of the image in 0..1");
-  CheckOption(min_pixels >= 1, "min_pixels", min_pixels, "at least 1 pixel");
-  CheckOption(min_match_iou > 0 && min_match_iou <= 1, "min_match_iou",
-              min_match_iou, "0..1");
-  CheckOption(max_missed_frames >= 0, "max_missed_frames", max_missed_frames,
-              "a number of frames >= 0");
-  CheckOption(birth_frames >= 1, "birth_frames", birth_frames,
-              "at least 1 frame");
-  CheckOption(confident_score >= 0 && confident_score <= 1, "confident_score",
-              confident_score, "0..1");
-  CheckOption(min_contact > 0 && min_contact <= 1, "min_contact", min_contact,
-              "a share in 0..1");
-}
-
 SurfaceSplitter::SurfaceSplitter(const PinholeCamera& camera, LabelTable table,
                                  SplitOptions options)
     : camera_(camera),
@@ -67,6 +50,26 @@ SurfaceSplitter::SurfaceSplitter(const PinholeCamera& camera, LabelTable table,
       births_(4 * options_.birth_frames) {
   camera_.Check();
   options_.Check();
+}
+
+SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
+                                   const std::vector<InstanceMask>& detections,
+                                   const SurfacePrediction& prediction) {
+  CheckSizes(frame, detections, prediction);
+  ++frames_;
+  Work work{frame, points, ComposePrior(prediction), {}, {}, {}, {}, {}};
+  work.agreement = CompareDepth(frame.depth, work.prior, options_.prior);
+  CollectSegments(detections, &work);
+  AddMissedSurfaces(&work);
+  CutSegments(&work);
+  work.segment_labels =
+      ComposeSegments(work.segments, work.prior.labels, frame.depth);
+  SettleSurfaces(&work);
+  MergeCoveredSurfaces(&work);
+  DrawLabels(&work);
+  DrawUncertain(&work);
+  Remember(work);
+  return work.result;
 }
 
 void SurfaceSplitter::CheckSizes(const Frame& frame,
@@ -102,66 +105,20 @@ SurfacePrediction SurfaceSplitter::ComposePrior(
   return prior;
 }
 
-bool SurfaceSplitter::IsTrackable(const std::string& class_name) const {
-  return options_.rigid_objects ||
-         table_.Kind(class_name) == SurfaceKind::kNonRigid;
-}
-
-Trust SurfaceSplitter::TrustOf(const InstanceMask& detection) const {
-  const double area =
-      double(cv::countNonZero(detection.mask)) / detection.mask.total();
-  const bool full = detection.score >= options_.min_score &&
-                    area <= options_.max_area &&
-                    IsTrackable(detection.class_name);
-  return full ? Trust::kFull : Trust::kMatched;
-}
-
 void SurfaceSplitter::CollectSegments(
     const std::vector<InstanceMask>& detections, Work* work) const {
-  std::vector<Candidate> candidates;
-  std::vector<const InstanceMask*> sources;
-  for (const InstanceMask& detection : detections) {
-    if (!options_.classes.empty() &&
-        options_.classes.count(detection.class_name) == 0) {
-      continue;
-    }
-    candidates.push_back({detection.mask, TrustOf(detection)});
-    sources.push_back(&detection);
-  }
+  const std::vector<Candidate> candidates =
+      ScreenDetections(detections, table_, options_);
   MatchOptions match_options;
   match_options.min_iou = options_.min_match_iou;
   const std::vector<Match> matches =
       MatchInstances(candidates, work->prior.labels, work->agreement,
                      registry_.Matchable(), match_options);
-  std::map<int, std::size_t> segment_of;  // By surface.
-  // Pieces last, so that a segment begins with its main detection.
-  for (const bool piece : {false, true}) {
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-      if (matches[i].piece != piece) continue;
-      Segment segment;
-      segment.surface = matches[i].surface;
-      segment.mask = candidates[i].mask.clone();
-      segment.class_name = sources[i]->class_name;
-      segment.score = sources[i]->score;
-      segment.iou = matches[i].iou;
-      if (segment.surface == 0 && candidates[i].trust != Trust::kFull) {
-        work->result.decisions.push_back(MakeDecision("ignored", segment));
-        if (IsTrackable(segment.class_name) &&
-            segment.score < options_.min_score) {
-          work->unconfirmed |= segment.mask;
-        }
-        continue;
-      }
-      const auto known = segment_of.find(segment.surface);
-      if (segment.surface > 0 && known != segment_of.end()) {
-        work->segments[known->second].mask |= segment.mask;
-        work->result.decisions.push_back(MakeDecision("merged", segment));
-        continue;
-      }
-      segment_of[segment.surface] = work->segments.size();
-      work->segments.push_back(segment);
-    }
-  }
+  SortedDetections sorted = SortDetections(candidates, matches, table_,
+                                           options_, work->frame.depth.size());
+  work->segments = std::move(sorted.segments);
+  work->unconfirmed = sorted.unconfirmed;
+  work->result.decisions = std::move(sorted.decisions);
 }
 
 void SurfaceSplitter::AddMissedSurfaces(Work* work) const {
@@ -182,15 +139,9 @@ void SurfaceSplitter::CutSegments(Work* work) const {
   std::vector<Segment>& segments = work->segments;
   tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
     Segment& segment = segments[i];
-    SurfaceObservation observation{segment.surface, segment.mask, {}, {}};
-    observation.support = support_.Predict(segment.surface, work->prior.labels);
-    observation.others.create(work->frame.depth.size());
-    observation.others.setTo(0);
-    for (std::size_t j = 0; j < segments.size(); ++j) {
-      if (j != i && !segments[j].mask.empty()) {
-        observation.others |= segments[j].mask;
-      }
-    }
+    const SurfaceObservation observation{
+        segment.surface, segment.mask, MasksOfOthers(i, *work),
+        support_.Predict(segment.surface, work->prior.labels)};
     segment.evidence =
         GatherEvidence(observation, work->prior.labels, work->agreement,
                        options_.graph_cut, options_.prior);
@@ -201,15 +152,38 @@ void SurfaceSplitter::CutSegments(Work* work) const {
   });
 }
 
-void SurfaceSplitter::RecordSurface(const Segment& segment, Work* work) {
-  const bool revived = registry_.at(segment.surface).dormant;
-  registry_.RecordDetection(segment.surface, work->frame.index,
-                            segment.class_name, segment.score);
-  work->result.decisions.push_back(
-      MakeDecision(revived ? "revived" : "matched", segment));
+cv::Mat_<uchar> SurfaceSplitter::MasksOfOthers(std::size_t index,
+                                               const Work& work) const {
+  cv::Mat_<uchar> others(work.frame.depth.size(), uchar(0));
+  for (std::size_t i = 0; i < work.segments.size(); ++i) {
+    const cv::Mat_<uchar>& mask = work.segments[i].mask;
+    if (i != index && !mask.empty()) others |= mask;
+  }
+  return others;
 }
 
-void SurfaceSplitter::RecordMissed(const Segment& segment, int pixels,
+void SurfaceSplitter::SettleSurfaces(Work* work) {
+  const int count = static_cast<int>(work->segments.size());
+  for (int i = 0; i < count; ++i) {
+    const Segment& segment = work->segments[i];
+    if (segment.surface == 0) continue;
+    if (segment.mask.empty()) {
+      const cv::Mat_<uchar> pixels = PixelsOf(i, work->segment_labels);
+      SettleMissed(segment, CountWithDepth(pixels, work->frame.depth), work);
+      continue;
+    }
+    const bool revived = registry_.at(segment.surface).dormant;
+    registry_.RecordDetection(segment.surface, work->frame.index,
+                              segment.class_name, segment.score);
+    work->result.decisions.push_back(
+        MakeDecision(revived ? "revived" : "matched", segment));
+  }
+  for (int i = 0; i < count; ++i) {
+    if (work->segments[i].surface == 0) SettleNewcomer(i, work);
+  }
+}
+
+void SurfaceSplitter::SettleMissed(const Segment& segment, int pixels,
                                    Work* work) {
   const int missed =
       work->frame.index - registry_.at(segment.surface).last_detected_frame;
@@ -220,16 +194,35 @@ void SurfaceSplitter::RecordMissed(const Segment& segment, int pixels,
       MakeDecision(gone ? "dormant" : "missed", segment));
 }
 
+void SurfaceSplitter::SettleNewcomer(int index, Work* work) {
+  Segment& segment = work->segments[index];
+  const cv::Mat_<uchar> pixels = PixelsOf(index, work->segment_labels);
+  if (const int body = FindBody(index, pixels, *work)) {
+    segment.surface = body;
+    work->result.decisions.push_back(MakeDecision("merged", segment));
+    return;
+  }
+  const bool large =
+      CountWithDepth(pixels, work->frame.depth) >= options_.min_pixels;
+  if (large && IsConfirmed(segment, pixels, *work)) {
+    AddSurface(pixels, &segment, work);
+    return;
+  }
+  work->unconfirmed |= segment.mask | pixels;
+  work->result.decisions.push_back(
+      MakeDecision(large ? "pending" : "ignored", segment));
+}
+
 int SurfaceSplitter::FindBody(int index, const cv::Mat_<uchar>& pixels,
                               const Work& work) const {
   int best = 0;
   double best_share = options_.min_contact;
   for (int i = 0; i < static_cast<int>(work.segments.size()); ++i) {
     const int id = work.segments[i].surface;
-    if (i == index || id == 0) continue;
-    if (registry_.at(id).class_name != work.segments[index].class_name) {
-      continue;
-    }
+    const bool alike =
+        i != index && id > 0 &&
+        registry_.at(id).class_name == work.segments[index].class_name;
+    if (!alike) continue;
     const double share =
         ContactShare(work.points, pixels, PixelsOf(i, work.segment_labels));
     if (share < best_share) continue;
@@ -243,59 +236,37 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
                                   const cv::Mat_<uchar>& pixels,
                                   const Work& work) {
   const int hits = births_.Add(work.frame.index, segment.mask);
-  if (last_.labels.empty() && segment.score >= options_.confident_score) {
-    return true;
-  }
+  if (frames_ == 1 && segment.score >= options_.confident_score) return true;
   const cv::Mat mapped = pixels & (work.prior.labels == 0) &
                          (work.agreement == static_cast<int>(Agreement::kSame));
   const bool was_background =
+      frames_ > kEarlyFrames &&
       2 * cv::countNonZero(mapped) > cv::countNonZero(pixels);
   return hits >= options_.birth_frames * (was_background ? 2 : 1);
 }
 
-void SurfaceSplitter::SettleNewcomer(int index, Work* work) {
-  Segment& segment = work->segments[index];
-  const cv::Mat_<uchar> pixels = PixelsOf(index, work->segment_labels);
-  if (const int body = FindBody(index, pixels, *work)) {
-    segment.surface = body;
-    work->result.decisions.push_back(MakeDecision("merged", segment));
-    return;
-  }
-  const bool large =
-      CountWithDepth(pixels, work->frame.depth) >= options_.min_pixels;
-  if (!large || !IsConfirmed(segment, pixels, *work)) {
-    work->unconfirmed |= segment.mask | pixels;
-    work->result.decisions.push_back(
-        MakeDecision(large ? "pending" : "ignored", segment));
-    return;
-  }
-  births_.Remove(segment.mask);
-  const SurfaceKind kind = table_.Kind(segment.class_name);
+void SurfaceSplitter::AddSurface(const cv::Mat_<uchar>& pixels,
+                                 Segment* segment, Work* work) {
+  births_.Remove(segment->mask);
+  const SurfaceKind kind = table_.Kind(segment->class_name);
   const int known = registry_.FindDormant(
       ComputeAppearance(work->frame.color, work->points, pixels), kind);
-  segment.surface =
-      known > 0 ? known
-                : registry_.Create(work->frame.index, segment.class_name, kind);
-  registry_.RecordDetection(segment.surface, work->frame.index,
-                            segment.class_name, segment.score);
+  segment->surface = known > 0 ? known
+                               : registry_.Create(work->frame.index,
+                                                  segment->class_name, kind);
+  registry_.RecordDetection(segment->surface, work->frame.index,
+                            segment->class_name, segment->score);
   work->result.decisions.push_back(
-      MakeDecision(known > 0 ? "revived" : "born", segment));
+      MakeDecision(known > 0 ? "revived" : "born", *segment));
 }
 
 void SurfaceSplitter::MergeCoveredSurfaces(Work* work) {
   for (Segment& part : work->segments) {
     if (part.surface == 0 || !part.mask.empty()) continue;
     for (const Segment& body : work->segments) {
-      if (body.mask.empty() || body.surface == 0 ||
-          registry_.at(body.surface).class_name != part.class_name) {
-        continue;
-      }
-      const Overlap overlap = ComputeOverlap(
-          body.mask, part.surface, work->prior.labels, work->agreement);
-      if (overlap.covered * overlap.agreement < MatchOptions().min_contained ||
-          registry_.CountCovered(part.surface, body.surface) < kCoveredFrames) {
-        continue;
-      }
+      if (!IsCovered(part, body, *work)) continue;
+      const int hits = registry_.CountCovered(part.surface, body.surface);
+      if (hits < kCoveredFrames) continue;
       registry_.Merge(part.surface, body.surface);
       work->result.decisions.push_back(MakeDecision("merged", part));
       part.surface = body.surface;
@@ -304,71 +275,56 @@ void SurfaceSplitter::MergeCoveredSurfaces(Work* work) {
   }
 }
 
-void SurfaceSplitter::FinishLabels(Work* work) const {
+bool SurfaceSplitter::IsCovered(const Segment& part, const Segment& body,
+                                const Work& work) {
+  if (body.mask.empty() || body.surface == 0 ||
+      registry_.at(body.surface).class_name != part.class_name) {
+    return false;
+  }
+  const Overlap overlap = ComputeOverlap(body.mask, part.surface,
+                                         work.prior.labels, work.agreement);
+  return overlap.covered * overlap.agreement >= MatchOptions().min_contained;
+}
+
+void SurfaceSplitter::DrawLabels(Work* work) const {
   std::vector<std::uint16_t> id_of(work->segments.size() + 1, 0);
-  UncertainInput input;
-  input.detected.create(work->frame.depth.size());
-  input.detected.setTo(0);
   for (std::size_t i = 0; i < work->segments.size(); ++i) {
-    const Segment& segment = work->segments[i];
-    const int id = segment.surface;
+    const int id = work->segments[i].surface;
     if (id > 0 && !registry_.at(id).dormant) {
       id_of[i + 1] = static_cast<std::uint16_t>(id);
     }
-    if (!segment.mask.empty()) input.detected |= segment.mask;
   }
-  work->result.labels.create(work->frame.depth.size());
+  work->result.labels.create(work->segment_labels.size());
   std::transform(work->segment_labels.begin(), work->segment_labels.end(),
                  work->result.labels.begin(),
                  [&](std::uint16_t segment) { return id_of[segment]; });
-  input.labels = work->result.labels;
-  input.unconfirmed = work->unconfirmed;
-  input.predicted_labels = work->prior.labels;
-  input.agreement = work->agreement;
-  input.depth = work->frame.depth;
+}
+
+void SurfaceSplitter::DrawUncertain(Work* work) const {
+  UncertainInput input{work->result.labels,
+                       work->unconfirmed,
+                       MasksOfOthers(work->segments.size(), *work),
+                       work->prior.labels.clone(),
+                       work->agreement,
+                       work->frame.depth};
+  for (const auto& [id, instance] : registry_.instances()) {
+    if (!instance.dormant) continue;
+    input.predicted_labels.setTo(0, work->prior.labels == id);
+  }
   work->result.uncertain = DrawUncertainRegion(input, options_.uncertain);
 }
 
-SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
-                                   const std::vector<InstanceMask>& detections,
-                                   const SurfacePrediction& prediction) {
-  CheckSizes(frame, detections, prediction);
-  Work work{frame, points, ComposePrior(prediction), {}, {}, {}, {}, {}};
-  work.agreement = CompareDepth(frame.depth, work.prior, options_.prior);
-  work.unconfirmed.create(frame.depth.size());
-  work.unconfirmed.setTo(0);
-  CollectSegments(detections, &work);
-  AddMissedSurfaces(&work);
-  CutSegments(&work);
-  work.segment_labels =
-      ComposeSegments(work.segments, work.prior.labels, frame.depth);
-  const int known = static_cast<int>(work.segments.size());
-  for (int i = 0; i < known; ++i) {
-    const Segment& segment = work.segments[i];
-    if (segment.surface == 0) continue;
-    if (!segment.mask.empty()) {
-      RecordSurface(segment, &work);
-    } else {
-      RecordMissed(
-          segment,
-          CountWithDepth(PixelsOf(i, work.segment_labels), frame.depth), &work);
-    }
-  }
-  for (int i = 0; i < known; ++i) {
-    if (work.segments[i].surface == 0) SettleNewcomer(i, &work);
-  }
-  MergeCoveredSurfaces(&work);
-  FinishLabels(&work);
+void SurfaceSplitter::Remember(const Work& work) {
   for (const Segment& segment : work.segments) {
     if (segment.surface == 0 || segment.mask.empty()) continue;
     const cv::Mat_<uchar> pixels = work.result.labels == segment.surface;
-    registry_.RecordAppearance(segment.surface,
-                               ComputeAppearance(frame.color, points, pixels));
+    registry_.RecordAppearance(
+        segment.surface,
+        ComputeAppearance(work.frame.color, work.points, pixels));
     support_.Update(segment.surface, pixels, segment.mask, work.prior.labels);
   }
-  last_ = {work.result.labels.clone(), frame.depth.clone()};
+  last_ = {work.result.labels.clone(), work.frame.depth.clone()};
   last_.depth.setTo(0, work.result.uncertain);
-  return work.result;
 }
 
 }  // namespace splitfusion

@@ -3,8 +3,6 @@
 
 #include <map>
 #include <opencv2/core.hpp>
-#include <set>
-#include <string>
 #include <vector>
 
 #include "splitfusion/lib/geometry/point_map.h"
@@ -12,62 +10,14 @@
 #include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/sequence/frame.h"
 #include "splitfusion/lib/split/birth_queue.h"
-#include "splitfusion/lib/split/graph_cut.h"
-#include "splitfusion/lib/split/instance_matcher.h"
 #include "splitfusion/lib/split/instance_registry.h"
 #include "splitfusion/lib/split/mask_support.h"
 #include "splitfusion/lib/split/segment.h"
+#include "splitfusion/lib/split/split_options.h"
+#include "splitfusion/lib/split/split_result.h"
 #include "splitfusion/lib/split/surface_prediction.h"
-#include "splitfusion/lib/split/surface_prior.h"
-#include "splitfusion/lib/split/uncertain_region.h"
 
 namespace splitfusion {
-
-/// How detections become surfaces; defaults hold for TUM-like sequences.
-struct SplitOptions {
-  GraphCutOptions graph_cut;
-  PriorOptions prior;
-  UncertainOptions uncertain;
-  double min_score = 0.4;        ///< A detection below counts only if it covers
-                                 ///< a known surface well.
-  double max_area = 0.75;        ///< Fraction of the image; larger likewise.
-  int min_pixels = 600;          ///< With depth; smaller instances are ignored.
-  double min_match_iou = 0.2;    ///< Detection to projected surface.
-  int max_missed_frames = 15;    ///< Kept alive without a detection.
-  int birth_frames = 2;          ///< Detections in as many of the last
-                                 ///< 2 x birth_frames frames make a surface;
-                                 ///< twice as many if it stands where
-                                 ///< background was mapped.
-  double confident_score = 0.5;  ///< A detection of the first frame makes a
-                                 ///< surface at once from this score on.
-  /// A newcomer is a part of the surface that it touches along this share of
-  /// its border.
-  double min_contact = 0.12;
-  bool rigid_objects = false;     ///< Give rigid classes surfaces of their own.
-  std::set<std::string> classes;  ///< Allow-list; empty = all.
-
-  /// @throw InputError if a value is out of its range.
-  void Check() const;
-};
-
-/// One decision, for the report.
-struct SplitDecision {
-  std::string action;  ///< "matched", "born", "missed", "dormant", "revived",
-                       ///< "merged", "pending", "ignored".
-  int surface = 0;     ///< Surface id, 0 if none.
-  std::string class_name;
-  double score = 0;    ///< Of the detection; 0 if none.
-  double overlap = 0;  ///< IoU with the projected surface; 0 if none.
-};
-
-/// Result of one frame.
-struct SplitResult {
-  LabelImage labels;  ///< HxW: surface id of every pixel, 0 = background.
-  /// HxW 8UC1: 255 where the pixel may be background but is too close to a
-  /// foreign or unexplained instance to be tracked or fused as such.
-  cv::Mat uncertain;
-  std::vector<SplitDecision> decisions;
-};
 
 /// Splits a frame into surfaces that keep their ids over time (SplitFusion
 /// IV-A): matches the detections to the projected surfaces of the frame
@@ -110,21 +60,24 @@ class SurfaceSplitter {
                   const std::vector<InstanceMask>& detections,
                   const SurfacePrediction& prediction) const;
   SurfacePrediction ComposePrior(const SurfacePrediction& prediction) const;
-  bool IsTrackable(const std::string& class_name) const;
-  Trust TrustOf(const InstanceMask& detection) const;
   void CollectSegments(const std::vector<InstanceMask>& detections,
                        Work* work) const;
   void AddMissedSurfaces(Work* work) const;
   void CutSegments(Work* work) const;
-  void RecordSurface(const Segment& segment, Work* work);
-  void RecordMissed(const Segment& segment, int pixels, Work* work);
+  cv::Mat_<uchar> MasksOfOthers(std::size_t index, const Work& work) const;
+  void SettleSurfaces(Work* work);
+  void SettleMissed(const Segment& segment, int pixels, Work* work);
   void SettleNewcomer(int index, Work* work);
   int FindBody(int index, const cv::Mat_<uchar>& pixels,
                const Work& work) const;
   bool IsConfirmed(const Segment& segment, const cv::Mat_<uchar>& pixels,
                    const Work& work);
+  void AddSurface(const cv::Mat_<uchar>& pixels, Segment* segment, Work* work);
   void MergeCoveredSurfaces(Work* work);
-  void FinishLabels(Work* work) const;
+  bool IsCovered(const Segment& part, const Segment& body, const Work& work);
+  void DrawLabels(Work* work) const;
+  void DrawUncertain(Work* work) const;
+  void Remember(const Work& work);
 
   PinholeCamera camera_;
   LabelTable table_;
@@ -133,6 +86,7 @@ class SurfaceSplitter {
   BirthQueue births_;
   MaskSupport support_;
   SurfacePrediction last_;  // Labels and live depth of the frame before.
+  int frames_ = 0;          // Split so far, the current one included.
 };
 
 }  // namespace splitfusion

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr double kPi = 3.14159265358979;
 constexpr double kStart = 0.8;        // Where time 0 is in the first quarter.
 constexpr double kWalkSeconds = 2.0;  // Of a quarter of the oval.
-constexpr double kQuarterSeconds = 4.0;
+constexpr double kQuarterSeconds = 5.0;
 constexpr double kFootOffset = 0.11;    // From the path, metres.
 constexpr double kAnkleHeight = 0.083;  // Of a planted foot, metres.
 
@@ -72,9 +72,9 @@ Phase PhaseAt(double time, bool walks) {
   const int number = static_cast<int>(phase.base) % 4;
   phase.walked = walks ? std::min(in_quarter / kWalkSeconds, 1.0) : 1.0;
   const double wave =
-      SmoothStep(in_quarter / 0.5) * SmoothStep((2.1 - in_quarter) / 0.6);
+      SmoothStep(in_quarter) * SmoothStep((3.3 - in_quarter) / 1.8);
   phase.wave = number % 2 == 0 ? wave : 0;
-  const double part = std::clamp((in_quarter - 1.9) / 2.0, 0.0, 1.0);
+  const double part = std::clamp((in_quarter - 1.9) / 2.8, 0.0, 1.0);
   const double strength = std::pow(std::sin(kPi * part), 2);
   phase.bend = number == 0 || number == 3 ? strength : 0;
   phase.raise = number == 1 ? strength : 0;
@@ -127,19 +127,25 @@ FootPose PoseFoot(int side, const Phase& phase, const Path& path) {
   return foot;
 }
 
+/// Unit vector on the arc from `from` (at 0) to `to` (at 1).
+Vector3d Turned(const Vector3d& from, const Vector3d& to, double part) {
+  const Quaterniond all = Quaterniond::FromTwoVectors(from, to);
+  return Quaterniond::Identity().slerp(part, all) * from.normalized();
+}
+
 ArmPose PoseArm(int side, const Phase& phase, double swing) {
-  const double beat = std::sin(2 * kPi * 1.2 * phase.seconds);
+  const double beat = std::sin(2 * kPi * 0.9 * phase.seconds);
   const double idle = 0.06 * std::sin(1.7 * phase.seconds + side);
   ArmPose arm;
-  arm.upper = Vector3d(0.75 * swing + idle, 0.3, -1).normalized();
-  arm.fore = Vector3d(0.3 + 0.9 * swing + idle, 0.18, -1).normalized();
+  arm.upper = Vector3d(0.75 * swing + idle, 0.3, -1);
+  arm.fore = Vector3d(0.3 + 0.9 * swing + idle, 0.18, -1);
   const auto gesture = [&arm](double strength, const Vector3d& upper,
                               const Vector3d& fore) {
-    arm.upper += strength * (upper.normalized() - arm.upper);
-    arm.fore += strength * (fore.normalized() - arm.fore);
+    arm.upper = Turned(arm.upper, upper, strength);
+    arm.fore = Turned(arm.fore, fore, strength);
   };
   if (side == 1) {
-    gesture(phase.wave, {0.35, 0.9, 0.05}, {0.3, 0.35 + 0.45 * beat, 1});
+    gesture(phase.wave, {0.35, 0.9, 0.05}, {0.4, 0.35 + 0.45 * beat, 1});
   }
   gesture(phase.bend, {0.75, 0.35, -0.75}, {0.9, 0.1, -0.5});
   gesture(phase.raise, {0.35, 0.9, 0.55}, {0.25, 0.25, 1});

@@ -8,7 +8,7 @@ namespace splitfusion {
 /// What the person does: it walks a quarter of an oval through the free middle
 /// of the room, waving, then stands for an action (bends down; raises its arms
 /// and leans; squats; bends and turns), and so on without end. One quarter
-/// takes 4 s; time 0 is in the middle of a step.
+/// takes 5 s; time 0 is in the middle of a step.
 class BodyMotion {
  public:
   /// Without `walks` the person stays at the world's origin, facing -y, and

@@ -22,10 +22,10 @@ double SideSign(int side) { return side == 0 ? 1 : -1; }
 
 /// Rest directions: arms 50 degrees and legs 6 degrees from the vertical.
 Vector3d RestArmDirection(int side) {
-  return {0, 0.766 * SideSign(side), -0.643};
+  return Vector3d(0, 0.766 * SideSign(side), -0.643).normalized();
 }
 Vector3d RestLegDirection(int side) {
-  return {0, 0.1045 * SideSign(side), -0.9945};
+  return Vector3d(0, 0.1045 * SideSign(side), -0.9945).normalized();
 }
 
 Vector3d RestHip(int side) {

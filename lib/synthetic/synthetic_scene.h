@@ -58,7 +58,10 @@ class SyntheticScene {
   /// @throw InputError if an option is out of its range.
   explicit SyntheticScene(const SyntheticOptions& options);
 
+  /// The options it was built with.
   const SyntheticOptions& options() const { return options_; }
+
+  /// Intrinsics of every frame.
   const PinholeCamera& camera() const { return camera_; }
 
   /// What the scene contains, moving things first; ids as in the labels.

@@ -27,10 +27,7 @@ class PendingFolder {
  public:
   /// @throw InputError if the target is in the way or cannot be made.
   PendingFolder(const std::string& directory, bool overwrite)
-      : target_(fs::absolute(directory).lexically_normal()) {
-    if (directory.empty()) {
-      throw InputError("directory = '': expected the folder to write");
-    }
+      : target_(AbsolutePath(directory)) {
     if (!target_.has_filename()) target_ = target_.parent_path();
     CheckTarget(overwrite);
     temporary_ = Sibling(".tmp");
@@ -62,6 +59,13 @@ class PendingFolder {
   }
 
  private:
+  static fs::path AbsolutePath(const std::string& directory) {
+    if (directory.empty()) {
+      throw InputError("directory = '': expected the folder to write");
+    }
+    return fs::absolute(directory).lexically_normal();
+  }
+
   fs::path Sibling(const std::string& suffix) const {
     return target_.parent_path() / ("." + target_.filename().string() + suffix +
                                     std::to_string(getpid()));

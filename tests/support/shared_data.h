@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <string>
 
+#include "support/repository.h"
+
 namespace splitfusion {
 
 /// Path of an entry of the optional data folder: $SPLITFUSION_SHARED, or else
@@ -14,10 +16,8 @@ namespace splitfusion {
 inline std::string SharedData(const std::string& name) {
   namespace fs = std::filesystem;
   const char* folder = std::getenv("SPLITFUSION_SHARED");
-  // This file is tests/support/shared_data.h of the repository.
-  const fs::path root = folder != nullptr ? fs::path(folder)
-                                          : fs::path(__FILE__).parent_path() /
-                                                ".." / ".." / ".." / "shared";
+  const fs::path root =
+      folder != nullptr ? fs::path(folder) : RepositoryRoot() / "../shared";
   const fs::path path = (root / "data" / name).lexically_normal();
   return fs::exists(path) ? path.string() : std::string();
 }

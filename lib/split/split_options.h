@@ -1,0 +1,42 @@
+#ifndef SPLITFUSION_LIB_SPLIT_SPLIT_OPTIONS_H_
+#define SPLITFUSION_LIB_SPLIT_SPLIT_OPTIONS_H_
+
+#include <set>
+#include <string>
+
+#include "splitfusion/lib/split/graph_cut.h"
+#include "splitfusion/lib/split/surface_prior.h"
+#include "splitfusion/lib/split/uncertain_region.h"
+
+namespace splitfusion {
+
+/// How detections become surfaces; defaults hold for TUM-like sequences.
+struct SplitOptions {
+  GraphCutOptions graph_cut;
+  PriorOptions prior;
+  UncertainOptions uncertain;
+  double min_score = 0.4;        ///< A detection below counts only if it covers
+                                 ///< a known surface well.
+  double max_area = 0.75;        ///< Fraction of the image; larger likewise.
+  int min_pixels = 600;          ///< With depth; smaller instances are ignored.
+  double min_match_iou = 0.2;    ///< Detection to projected surface.
+  int max_missed_frames = 15;    ///< Kept alive without a detection.
+  int birth_frames = 2;          ///< Detections in as many of the last
+                                 ///< 4 x birth_frames frames make a surface;
+                                 ///< twice as many if it stands where
+                                 ///< background was mapped.
+  double confident_score = 0.5;  ///< A detection of the first frame makes a
+                                 ///< surface at once from this score on.
+  /// A newcomer is a part of the surface that it touches along this share of
+  /// its border.
+  double min_contact = 0.12;
+  bool rigid_objects = false;     ///< Give rigid classes surfaces of their own.
+  std::set<std::string> classes;  ///< Allow-list; empty = all.
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SPLIT_SPLIT_OPTIONS_H_

@@ -1,0 +1,187 @@
+#include "splitfusion/lib/evaluation/run_evaluation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/evaluation/evaluation_json.h"
+#include "splitfusion/lib/evaluation/evaluation_table.h"
+#include "support/bent_plate.h"
+#include "support/repository.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+/// A run of the plate and its ground truth, as files.
+class RunEvaluationTest : public ::testing::Test {
+ protected:
+  RunEvaluationTest() {
+    options_.track_frame = 0;
+    options_.track_frames = 10;
+    options_.surface.samples = 5000;
+    std::filesystem::create_directories(folder_ / "run");
+    plate_.WriteRun(folder_ / "run");
+    plate_.WriteGroundTruth(folder_ / "sequence/gt");
+  }
+
+  RunEvaluation Evaluate() const {
+    RecordedRun run = ReadRun(folder_ / "run");
+    const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
+    return EvaluateRun(run, surfaces, ReadGroundTruth(folder_ / "sequence"),
+                       options_);
+  }
+
+  void Remove(const std::string& name) const {
+    std::filesystem::remove_all(folder_ / name);
+  }
+
+  TemporaryFolder folder_;
+  BentPlate plate_;
+  EvaluationOptions options_;
+};
+
+TEST_F(RunEvaluationTest, PerfectRunHasNoErrors) {
+  const RunEvaluation evaluation = Evaluate();
+  EXPECT_EQ(evaluation.trajectory.matched, 12);
+  EXPECT_LT(evaluation.trajectory.absolute.max, 1e-6);
+  EXPECT_TRUE(evaluation.trajectory.truth_from_estimate.isApprox(
+      BentPlate::TrueWorldFromWorld(), 1e-4));
+  ASSERT_TRUE(evaluation.background);
+  EXPECT_LT(evaluation.background->accuracy.statistics.max, 1e-4);
+  EXPECT_LT(evaluation.background->completeness.statistics.max, 1e-4);
+  EXPECT_DOUBLE_EQ(evaluation.background->f_score[0], 1);
+  EXPECT_TRUE(evaluation.skipped.empty());
+}
+
+TEST_F(RunEvaluationTest, WarpedPlateLiesOnItsTruth) {
+  const RunEvaluation evaluation = Evaluate();
+  ASSERT_EQ(evaluation.instances.size(), 1u);
+  const InstanceError& plate = evaluation.instances[0];
+  EXPECT_EQ(plate.name, "plate1");
+  EXPECT_EQ(plate.surface_id, 1);
+  EXPECT_EQ(plate.surface_label, "thin_plate");
+  ASSERT_EQ(plate.frames.size(), 2u);
+  EXPECT_EQ(plate.frames[1].frame, 6);
+  for (const InstanceFrameError& frame : plate.frames) {
+    EXPECT_TRUE(frame.matched);
+    EXPECT_LT(frame.surface.accuracy.statistics.max, 0.001);
+    EXPECT_LT(frame.surface.completeness.statistics.max, 0.001);
+    EXPECT_GT(frame.view.pixels, 1000);
+    EXPECT_LT(frame.view.uncovered, 30);  // At the border of the plate.
+    EXPECT_LT(frame.view.distances.statistics.p90, 0.001);
+  }
+}
+
+TEST_F(RunEvaluationTest, ViewErrorSeesWhatIsThereInsteadOfTheInstance) {
+  Remove("run/surfaces/001_thin_plate");
+  const RunEvaluation evaluation = Evaluate();
+  ASSERT_EQ(evaluation.instances.size(), 1u);
+  const InstanceError& plate = evaluation.instances[0];
+  EXPECT_EQ(plate.surface_id, -1);
+  EXPECT_FALSE(plate.frames[0].matched);
+  // The wall is half a metre behind: clipped to 0.3 m.
+  EXPECT_FLOAT_EQ(plate.frames[0].view.distances.statistics.median, 0.3);
+  EXPECT_THAT(evaluation.skipped, Contains(HasSubstr("instance 1")));
+}
+
+TEST_F(RunEvaluationTest, TracksFollowTheBendingPlate) {
+  const RunEvaluation evaluation = Evaluate();
+  ASSERT_TRUE(evaluation.tracks);
+  const TrackErrors& errors = evaluation.tracks->errors;
+  EXPECT_EQ(errors.points, 25);
+  EXPECT_EQ(errors.frames, 10);
+  EXPECT_EQ(evaluation.tracks->attached, 25);
+  EXPECT_EQ(errors.all.visible.count, 250);
+  EXPECT_LT(errors.all.visible.max, 0.001);
+  // A plate that bends is neither still nor rigid.
+  EXPECT_GT(errors.all.still_world.mean, 0.01);
+  EXPECT_GT(errors.all.rigid.mean, 0.003);
+  EXPECT_LT(errors.all.rigid.mean, errors.all.still_world.mean);
+  EXPECT_EQ(errors.instances.at(1).visible.count, 250);
+}
+
+TEST_F(RunEvaluationTest, PicksTheFirstOfEquallyGoodTrackFrames) {
+  options_.track_frame = -1;
+  EXPECT_EQ(Evaluate().tracks->errors.reference_frame, 0);
+}
+
+TEST_F(RunEvaluationTest, SaysWhatIsSkipped) {
+  for (const auto* name : {"static_mesh.ply", "mesh", "tracks.bin"}) {
+    Remove(std::string("sequence/gt/") + name);
+  }
+  const RunEvaluation evaluation = Evaluate();
+  EXPECT_FALSE(evaluation.background);
+  EXPECT_FALSE(evaluation.tracks);
+  EXPECT_THAT(evaluation.skipped,
+              testing::ElementsAre(HasSubstr("no static_mesh.ply"),
+                                   HasSubstr("no mesh/instK_T.ply"),
+                                   HasSubstr("no tracks.bin")));
+  EXPECT_THAT(FormatTable(evaluation), HasSubstr("skipped: track error"));
+}
+
+TEST_F(RunEvaluationTest, TracksOfAFrameBeyondTheTruthAreSkipped) {
+  options_.track_frame = 50;
+  EXPECT_THAT(Evaluate().skipped,
+              Contains("track error: frame 50 is not in the run"));
+}
+
+TEST_F(RunEvaluationTest, IsRepeatable) {
+  EXPECT_EQ(ToJson(Evaluate()), ToJson(Evaluate()));
+}
+
+/// All keys of all objects in a value.
+void CollectKeys(const nlohmann::ordered_json& value,
+                 std::set<std::string>* keys) {
+  for (const auto& [key, item] : value.items()) {
+    if (value.is_object()) keys->insert(key);
+    if (item.is_structured()) CollectKeys(item, keys);
+  }
+}
+
+TEST_F(RunEvaluationTest, EveryJsonKeyIsDocumented) {
+  std::ifstream page(RepositoryRoot() / "docs/evaluation.md");
+  const std::string text(std::istreambuf_iterator<char>(page), {});
+  const auto json = ToJson(Evaluate());
+  EXPECT_LT(json.at("ate").at("rmse").get<double>(), 1e-6);
+  std::set<std::string> keys;
+  CollectKeys(json, &keys);
+  for (const std::string& key : keys) {
+    EXPECT_THAT(text, HasSubstr("`" + key + "`"));
+  }
+}
+
+TEST(EvaluationOptions, RejectsNonsense) {
+  EvaluationOptions options;
+  options.track_frames = 0;
+  EXPECT_THROW(options.Check(), InputError);
+  options = {};
+  options.surface.samples = 0;
+  EXPECT_THROW(options.Check(), InputError);
+  options = {};
+  options.trajectory.relative_frames = {1, -1};
+  EXPECT_THROW(options.Check(), InputError);
+}
+
+TEST(ReadGroundTruth, NeedsATrajectory) {
+  const TemporaryFolder folder;
+  try {
+    ReadGroundTruth(folder / "");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("expected a folder with groundtruth"));
+  }
+}
+
+}  // namespace
+}  // namespace splitfusion

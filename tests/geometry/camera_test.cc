@@ -1,0 +1,55 @@
+#include "splitfusion/lib/geometry/camera.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr PinholeCamera kCamera = {640, 480, 520, 530, 319.5, 240.25};
+
+TEST(PinholeCamera, ProjectUndoesBackProject) {
+  for (const double u : {0.0, 319.5, 639.0}) {
+    for (const double v : {0.0, 100.25}) {
+      const Eigen::Vector3d point = kCamera.BackProject(u, v, 2.5);
+      EXPECT_EQ(point.z(), 2.5);
+      EXPECT_TRUE(kCamera.Project(point).isApprox(Eigen::Vector2d(u, v)));
+    }
+  }
+}
+
+TEST(PinholeCamera, XIsRightAndYIsDown) {
+  EXPECT_GT(kCamera.Project(Eigen::Vector3d(0.1, 0, 1)).x(), kCamera.cx);
+  EXPECT_GT(kCamera.Project(Eigen::Vector3d(0, 0.1, 1)).y(), kCamera.cy);
+}
+
+TEST(PinholeCamera, SubsampledSeesTheSamePointsAtEveryKthPixel) {
+  const PinholeCamera half = kCamera.Subsampled(4);
+  EXPECT_EQ(half.width, 160);
+  EXPECT_EQ(half.height, 120);
+  const Eigen::Vector3d point = kCamera.BackProject(40.0, 84.0, 1.5);
+  EXPECT_TRUE(half.Project(point).isApprox(Eigen::Vector2d(10, 21)));
+  EXPECT_EQ(kCamera.Subsampled(7).width, 92);  // Pixels 0, 7, ... 637.
+}
+
+TEST(PinholeCamera, CheckNamesTheField) {
+  PinholeCamera camera = kCamera;
+  EXPECT_NO_THROW(camera.Check());
+  camera.fy = std::nan("");
+  try {
+    camera.Check();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("camera fy = nan"));
+  }
+  camera = kCamera;
+  camera.width = 0;
+  EXPECT_THROW(camera.Check(), InputError);
+}
+
+}  // namespace
+}  // namespace splitfusion

@@ -1,0 +1,82 @@
+#include "splitfusion/lib/geometry/point_map.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr PinholeCamera kCamera = {64, 48, 60, 60, 31.5, 23.5};
+
+/// Depth of the plane n . X = d.
+cv::Mat_<float> PlaneDepth(const Eigen::Vector3d& n, double d) {
+  cv::Mat_<float> depth(kCamera.height, kCamera.width);
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 0; u < depth.cols; ++u) {
+      const Eigen::Vector3d ray = kCamera.BackProject<double>(u, v, 1);
+      depth(v, u) = static_cast<float>(d / n.dot(ray));
+    }
+  }
+  return depth;
+}
+
+Eigen::Vector3d ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
+
+TEST(ComputePointMap, PlaneHasItsNormalEverywhere) {
+  const Eigen::Vector3d n = Eigen::Vector3d(0.3, -0.4, 1).normalized();
+  const PointMap map = ComputePointMap(PlaneDepth(n, 1.2), kCamera);
+  for (int v = 0; v < kCamera.height; ++v) {
+    for (int u = 0; u < kCamera.width; ++u) {
+      EXPECT_NEAR(n.dot(ToEigen(map.points(v, u))), 1.2, 1e-5);
+      // Towards the camera.
+      EXPECT_TRUE(ToEigen(map.normals(v, u)).isApprox(-n, 2e-3));
+    }
+  }
+}
+
+TEST(ComputePointMap, MissingDepthHasNeitherPointNorNormal) {
+  cv::Mat_<float> depth = PlaneDepth({0, 0, 1}, 1);
+  depth(20, 30) = 0;
+  const PointMap map = ComputePointMap(depth, kCamera);
+  EXPECT_EQ(map.points(20, 30), cv::Vec3f(0, 0, 0));
+  EXPECT_EQ(map.normals(20, 30), cv::Vec3f(0, 0, 0));
+  EXPECT_NEAR(map.normals(20, 31)[2], -1, 1e-5);
+}
+
+TEST(ComputePointMap, NormalsDoNotMixTheTwoSidesOfAStep) {
+  cv::Mat_<float> depth = PlaneDepth({0, 0, 1}, 1);
+  depth.colRange(32, 64).setTo(1.5f);
+  const PointMap map = ComputePointMap(depth, kCamera);
+  for (const int u : {30, 31, 32, 33}) {
+    EXPECT_NEAR(map.normals(24, u)[2], -1, 1e-5) << u;
+  }
+}
+
+TEST(ComputePointMap, SpecksHaveNoNormal) {
+  cv::Mat_<float> depth(kCamera.height, kCamera.width, 0.0f);
+  depth(10, 10) = 1;
+  depth(10, 11) = 1;
+  EXPECT_EQ(ComputePointMap(depth, kCamera).normals(10, 10),
+            cv::Vec3f(0, 0, 0));
+}
+
+TEST(ComputePointMap, RejectsForeignImagesAndOptions) {
+  EXPECT_THROW(ComputePointMap(cv::Mat(48, 64, CV_16UC1), kCamera), InputError);
+  EXPECT_THROW(ComputePointMap(cv::Mat(47, 64, CV_32FC1), kCamera), InputError);
+  PointMapOptions options;
+  options.normal_radius = 0;
+  EXPECT_THROW(ComputePointMap(PlaneDepth({0, 0, 1}, 1), kCamera, options),
+               InputError);
+}
+
+TEST(DepthSigma, GrowsWithDistance) {
+  EXPECT_NEAR(DepthSigma(0.4), 0.0012, 1e-9);
+  EXPECT_LT(DepthSigma(1.0), DepthSigma(2.0));
+  EXPECT_LT(DepthSigma(2.0f), DepthSigma(4.0f));
+}
+
+}  // namespace
+}  // namespace splitfusion

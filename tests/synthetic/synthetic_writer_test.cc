@@ -1,0 +1,275 @@
+#include "splitfusion/lib/synthetic/synthetic_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+#include "splitfusion/lib/sequence/trajectory.h"
+#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/synthetic/synthetic_scene.h"
+#include "support/temporary_folder.h"
+#include "synthetic/expect_input_error.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+SyntheticOptions TinyOptions() {
+  SyntheticOptions options;
+  options.width = 128;
+  options.height = 96;
+  options.frames = 4;
+  options.track_points = 50;
+  return options;
+}
+
+SyntheticWriterOptions EveryOther() {
+  SyntheticWriterOptions options;
+  options.mesh_every = 2;
+  options.seen_every = 2;
+  return options;
+}
+
+/// Relative path and content of every file below a folder.
+std::map<std::string, std::string> Contents(const TemporaryFolder& folder,
+                                            const std::string& name) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / name)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string path = fs::relative(entry.path(), folder / "").string();
+    contents[path.substr(name.size())] = folder.Read(path);
+  }
+  return contents;
+}
+
+/// Names directly below a folder, hidden ones too.
+std::size_t EntryCount(const std::string& folder) {
+  const fs::directory_iterator entries(folder);
+  return std::distance(begin(entries), end(entries));
+}
+
+class SyntheticWriterTest : public ::testing::Test {
+ protected:
+  void Write(const std::string& name, bool overwrite = false) {
+    SyntheticWriterOptions options = EveryOther();
+    options.overwrite = overwrite;
+    WriteSyntheticSequence(TinyOptions(), options, folder_ / name);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SyntheticWriterTest, TheSequenceReaderReadsIt) {
+  Write("seq");
+  const SyntheticScene scene(TinyOptions());
+  TumReaderOptions options;
+  options.depth_filter = {};
+  TumReader reader(folder_ / "seq", options);
+  ASSERT_EQ(reader.size(), 4);
+  EXPECT_NEAR(reader.camera().fx, scene.camera().fx, 1e-9);
+  EXPECT_NEAR(reader.camera().cy, scene.camera().cy, 1e-9);
+  EXPECT_EQ(reader.calibration().depth_scale, 5000);
+  for (int i = 0; i < 4; ++i) {
+    const auto frame = reader.Next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->stem, scene.Stem(i));
+    EXPECT_NEAR(frame->timestamp, scene.Timestamp(i), 1e-6);
+    const SyntheticFrame expected = scene.Render(i);
+    EXPECT_EQ(cv::norm(frame->color, expected.frame.color, cv::NORM_INF), 0);
+    // The reader drops what it thinks unreliable; the rest is the same.
+    const cv::Mat kept = frame->depth > 0;
+    EXPECT_GT(cv::countNonZero(kept), 0.5 * kept.total());
+    EXPECT_LT(cv::norm(frame->depth, expected.frame.depth, cv::NORM_INF, kept),
+              0.03);
+  }
+  EXPECT_FALSE(reader.Next());
+}
+
+TEST_F(SyntheticWriterTest, TheMaskReaderReadsIt) {
+  Write("seq");
+  const SyntheticScene scene(TinyOptions());
+  EXPECT_EQ(FindMaskFolder(folder_ / "seq"), folder_ / "seq/masks_noisy");
+  MaskFolderSegmenter segmenter(folder_ / "seq/masks_noisy");
+  for (int i = 0; i < 4; ++i) {
+    const SyntheticFrame rendered = scene.Render(i);
+    const auto expected = scene.Detections(rendered);
+    const auto found = segmenter.Segment(rendered.frame);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_EQ(found[k].class_name, expected[k].class_name);
+      EXPECT_NEAR(found[k].score, expected[k].score, 6e-4);
+    }
+  }
+}
+
+TEST_F(SyntheticWriterTest, GroundTruthPosesAreExact) {
+  Write("seq");
+  const SyntheticScene scene(TinyOptions());
+  for (const char* name : {"seq/groundtruth.txt", "seq/gt/groundtruth.txt"}) {
+    const Trajectory poses = ReadTumTrajectory(folder_ / name);
+    ASSERT_EQ(poses.size(), 4u);
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_NEAR(poses[i].timestamp, scene.Timestamp(i), 1e-6);
+      EXPECT_TRUE(
+          poses[i].world_from_camera.isApprox(scene.WorldFromCamera(i), 1e-7));
+    }
+  }
+}
+
+TEST_F(SyntheticWriterTest, StaticMeshTellsWhatWasSeen) {
+  Write("seq");
+  PlyProperties extra;
+  const TriangleMesh mesh = ReadPly(folder_ / "seq/gt/static_mesh.ply", &extra);
+  ASSERT_EQ(extra["seen"].size(), mesh.vertices.size());
+  ASSERT_EQ(extra["label"].size(), mesh.vertices.size());
+  int seen = 0, behind_camera = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    EXPECT_LE(extra["seen"][i], 2);  // Frames 0 and 2.
+    seen += extra["seen"][i] > 0;
+    const bool behind = mesh.vertices[i].y() < -2.2f;
+    behind_camera += behind && extra["seen"][i] > 0;
+  }
+  EXPECT_GT(seen, 1000);
+  EXPECT_LT(seen, 0.5 * mesh.vertices.size());
+  EXPECT_EQ(behind_camera, 0);
+}
+
+TEST_F(SyntheticWriterTest, PosedMeshesKeepTheirVertices) {
+  Write("seq");
+  const SyntheticScene scene(TinyOptions());
+  const std::string head = folder_ / "seq/gt/mesh/inst1_";
+  const TriangleMesh first = ReadPly(head + scene.Stem(0) + ".ply");
+  const TriangleMesh later = ReadPly(head + scene.Stem(2) + ".ply");
+  EXPECT_FALSE(fs::exists(head + scene.Stem(1) + ".ply"));
+  EXPECT_EQ(first.triangles, later.triangles);
+  EXPECT_EQ(later.vertices, scene.PosedMesh(kPersonId, 2).vertices);
+}
+
+TEST_F(SyntheticWriterTest, TracksHaveTheDocumentedLayout) {
+  Write("seq");
+  const SyntheticScene scene(TinyOptions());
+  const std::string bytes = folder_.Read("seq/gt/tracks.bin");
+  const std::size_t frames = 4, points = 100;
+  ASSERT_EQ(bytes.size(), 16 + points * 16 + frames * points * 13);
+  std::uint32_t header[4];
+  std::memcpy(header, bytes.data(), 16);
+  EXPECT_EQ(header[0], 0x4b525431u);
+  EXPECT_EQ(header[1], 1u);
+  EXPECT_EQ(header[2], frames);
+  EXPECT_EQ(header[3], points);
+  const auto expected = scene.TrackPositions(3);
+  float position[3];
+  const std::size_t at = 16 + points * 16 + (3 * points + 99) * 12;
+  std::memcpy(position, bytes.data() + at, 12);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(position[k], expected[99][k]);
+  const auto visible = scene.TrackVisibility(scene.Render(3));
+  EXPECT_EQ(bytes.back() != 0, visible.back());
+}
+
+TEST_F(SyntheticWriterTest, LabelsNameTheInstances) {
+  Write("seq");
+  const auto labels = nlohmann::json::parse(folder_.Read("seq/gt/labels.json"));
+  ASSERT_EQ(labels["instances"].size(), 3u);
+  EXPECT_EQ(labels["instances"][0]["id"], 1);
+  EXPECT_EQ(labels["instances"][0]["category"], "person");
+  EXPECT_EQ(labels["instances"][0]["rigid"], false);
+  EXPECT_EQ(labels["instances"][2]["moving"], false);
+  const auto config = nlohmann::json::parse(folder_.Read("seq/gt/config.json"));
+  EXPECT_EQ(config["seed"], 1);
+  EXPECT_EQ(config["scene"], "room_person");
+}
+
+TEST_F(SyntheticWriterTest, SameOptionsSameBytes) {
+  Write("a");
+  Write("b");
+  const auto a = Contents(folder_, "a"), b = Contents(folder_, "b");
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_GT(a.size(), 30u);
+  for (const auto& [path, content] : a) {
+    ASSERT_EQ(b.count(path), 1u) << path;
+    EXPECT_TRUE(b.at(path) == content) << path;
+  }
+}
+
+TEST_F(SyntheticWriterTest, ReportsProgress) {
+  std::vector<int> done;
+  WriteSyntheticSequence(TinyOptions(), {}, folder_ / "seq",
+                         [&](int frames) { done.push_back(frames); });
+  EXPECT_EQ(done, (std::vector<int>{1, 2, 3, 4}));
+}
+
+TEST_F(SyntheticWriterTest, AFailureLeavesNothingBehind) {
+  const auto fail = [](int frames) {
+    if (frames == 2) throw std::runtime_error("stop");
+  };
+  EXPECT_THROW(WriteSyntheticSequence(TinyOptions(), {}, folder_ / "seq", fail),
+               std::runtime_error);
+  EXPECT_EQ(EntryCount(folder_ / ""), 0u);
+}
+
+TEST_F(SyntheticWriterTest, AFailedOverwriteKeepsTheOldSequence) {
+  Write("seq");
+  const auto before = Contents(folder_, "seq");
+  SyntheticWriterOptions options;
+  options.overwrite = true;
+  const auto fail = [](int) { throw std::runtime_error("stop"); };
+  EXPECT_THROW(
+      WriteSyntheticSequence(TinyOptions(), options, folder_ / "seq", fail),
+      std::runtime_error);
+  EXPECT_EQ(Contents(folder_, "seq"), before);
+  EXPECT_EQ(EntryCount(folder_ / ""), 1u);
+}
+
+TEST_F(SyntheticWriterTest, RefusesAFolderThatIsNotEmpty) {
+  Write("seq");
+  ExpectInputError([&] { Write("seq"); },
+                   "exists and is not empty; expected a new folder");
+  EXPECT_NO_THROW(Write("seq", /*overwrite=*/true));
+  EXPECT_EQ(EntryCount(folder_ / ""), 1u);
+}
+
+TEST_F(SyntheticWriterTest, OverwritesOnlySequences) {
+  folder_.Write("home/thesis.txt", "years of work");
+  ExpectInputError([&] { Write("home", /*overwrite=*/true); },
+                   "not overwritten, since it is not a sequence");
+  EXPECT_EQ(folder_.Read("home/thesis.txt"), "years of work");
+}
+
+TEST_F(SyntheticWriterTest, AnEmptyFolderAndASlashAtTheEndAreFine) {
+  fs::create_directories(folder_ / "empty");
+  Write("empty/");
+  EXPECT_TRUE(folder_.Has("empty/associations.txt"));
+}
+
+TEST_F(SyntheticWriterTest, NamesWhatIsWrong) {
+  folder_.Write("file", "x");
+  ExpectInputError([&] { Write("file"); }, "is a file, expected a folder");
+  ExpectInputError([&] { Write("file/seq"); }, "file/seq: cannot be written");
+  SyntheticWriterOptions options;
+  options.mesh_every = 0;
+  ExpectInputError(
+      [&] { WriteSyntheticSequence(TinyOptions(), options, folder_ / "x"); },
+      "mesh_every = 0");
+  ExpectInputError([&] { WriteSyntheticSequence(TinyOptions(), {}, ""); },
+                   "directory = '': expected the folder to write");
+}
+
+TEST(WritePly, RejectsExtraPropertiesOfAnotherLength) {
+  const TemporaryFolder folder;
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}};
+  ExpectInputError(
+      [&] {
+        WritePly(folder / "mesh.ply", mesh, {{"seen", {1.0}}});
+      },
+      "values of 'seen' = 1: expected 2, one a vertex");
+}
+
+}  // namespace
+}  // namespace splitfusion
