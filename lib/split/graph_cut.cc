@@ -68,7 +68,7 @@ class EdgeWeight {
     for (int c = 0; c < 3; ++c) square += float(a[c] - b[c]) * (a[c] - b[c]);
     const float scale = static_cast<float>(options_.color_scale);
     const float share = static_cast<float>(options_.color_share);
-    return 1 - share * (1 - std::exp(-square / (scale * scale)));
+    return 1 - share * square / (square + scale * scale);
   }
 
   const PointMap& points_;

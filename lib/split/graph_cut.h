@@ -19,9 +19,10 @@ struct GraphCutOptions {
   /// edge to 1/e where the surface is concave (two things that touch) ...
   double concave_scale = 0.1;
   double convex_scale = 0.6;  ///< ... and where it is convex.
-  /// Difference of colour (0..255, length of the BGR difference) ...
+  /// Difference of colour (0..255, length of the BGR difference) with half of
+  /// the effect ...
   double color_scale = 40.0;
-  double color_share = 0.5;  ///< ... and how far it may lower an edge, 0..1.
+  double color_share = 0.5;  ///< ... that colour has at most on an edge, 0..1.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;

@@ -1,6 +1,7 @@
 #include "splitfusion/lib/split/instance_matcher.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <tuple>
 
@@ -12,15 +13,74 @@ namespace {
 
 using OverlapTable = std::vector<std::map<int, Overlap>>;  // [detection][id]
 
+/// Pixels that a mask has in common with one surface.
+struct CommonPixels {
+  int all = 0;
+  int measured = 0;  // With live depth.
+  int same = 0;      // At the surface's depth.
+};
+
+/// Pixels of every surface in the projection, by id.
+std::map<int, int> CountPredicted(const LabelImage& labels) {
+  std::map<int, int> counts;
+  // Neighbours mostly share their label: look up once per run.
+  int label = -1;
+  int* count = nullptr;
+  for (const std::uint16_t value : labels) {
+    if (value != label) count = &counts[label = value];
+    ++*count;
+  }
+  return counts;
+}
+
+/// Common pixels by surface id; `detected` receives the size of the mask.
+std::map<int, CommonPixels> CountCommon(const cv::Mat_<uchar>& mask,
+                                        const LabelImage& labels,
+                                        const cv::Mat_<uchar>& agreement,
+                                        int* detected) {
+  std::map<int, CommonPixels> counts;
+  int label = -1;
+  CommonPixels* count = nullptr;
+  *detected = 0;
+  for (int v = 0; v < mask.rows; ++v) {
+    for (int u = 0; u < mask.cols; ++u) {
+      if (!mask(v, u)) continue;
+      ++*detected;
+      if (labels(v, u) != label) count = &counts[label = labels(v, u)];
+      const auto state = static_cast<Agreement>(agreement(v, u));
+      ++count->all;
+      count->measured += state != Agreement::kUnknown;
+      count->same += state == Agreement::kSame;
+    }
+  }
+  return counts;
+}
+
+Overlap MakeOverlap(int detected, int predicted, const CommonPixels& common) {
+  Overlap overlap;
+  if (common.all == 0) return overlap;
+  overlap.iou = double(common.all) / (detected + predicted - common.all);
+  overlap.covered = double(common.all) / predicted;
+  overlap.agreement =
+      common.measured > 0 ? double(common.same) / common.measured : 0;
+  overlap.contained = overlap.agreement * common.all / detected;
+  return overlap;
+}
+
 OverlapTable ComputeTable(const std::vector<Candidate>& candidates,
                           const LabelImage& labels,
                           const cv::Mat_<uchar>& agreement,
                           const std::set<int>& surfaces) {
+  const std::map<int, int> predicted = CountPredicted(labels);
   OverlapTable table;
   for (const Candidate& candidate : candidates) {
     std::map<int, Overlap>& row = table.emplace_back();
-    for (const int id : surfaces) {
-      row[id] = ComputeOverlap(candidate.mask, id, labels, agreement);
+    int detected = 0;
+    const auto counts =
+        CountCommon(candidate.mask, labels, agreement, &detected);
+    for (const auto& [id, common] : counts) {
+      if (surfaces.count(id) == 0) continue;
+      row[id] = MakeOverlap(detected, predicted.at(id), common);
     }
   }
   return table;
@@ -85,27 +145,12 @@ void MatchOptions::Check() const {
 Overlap ComputeOverlap(const cv::Mat_<uchar>& mask, int surface,
                        const LabelImage& predicted_labels,
                        const cv::Mat_<uchar>& agreement) {
-  int detected = 0, predicted = 0, common = 0, same = 0, measured = 0;
-  for (int v = 0; v < mask.rows; ++v) {
-    for (int u = 0; u < mask.cols; ++u) {
-      const bool in_mask = mask(v, u) > 0;
-      const bool in_surface = predicted_labels(v, u) == surface;
-      detected += in_mask;
-      predicted += in_surface;
-      if (!in_mask || !in_surface) continue;
-      ++common;
-      const auto state = static_cast<Agreement>(agreement(v, u));
-      same += state == Agreement::kSame;
-      measured += state != Agreement::kUnknown;
-    }
-  }
-  Overlap overlap;
-  if (common == 0) return overlap;
-  overlap.iou = double(common) / (detected + predicted - common);
-  overlap.covered = double(common) / predicted;
-  overlap.agreement = measured > 0 ? double(same) / measured : 0;
-  overlap.contained = overlap.agreement * common / detected;
-  return overlap;
+  int detected = 0;
+  const auto counts = CountCommon(mask, predicted_labels, agreement, &detected);
+  const auto found = counts.find(surface);
+  if (found == counts.end()) return {};
+  return MakeOverlap(detected, cv::countNonZero(predicted_labels == surface),
+                     found->second);
 }
 
 std::vector<Match> MatchInstances(const std::vector<Candidate>& candidates,
