@@ -60,7 +60,7 @@ MeshRendering RenderMeshes(const SurfaceMap& surfaces,
   rendering.raster.Clear(camera);
   int first = 0;
   for (const auto& [id, surface] : surfaces) {
-    if (surface->is_ray_cast()) continue;
+    if (surface->is_ray_cast() || surface->dormant()) continue;
     rendering.first_triangle[id] = first;
     RasterizeTriangles(surface->WarpedVertices(), surface->mesh().triangles,
                        camera, /*cull_back_faces=*/true, first,

@@ -113,6 +113,7 @@ void SplitFusion::Split(const Frame& frame, FrameReport* report) {
   live_.labels = split.labels;
   if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
   report->decisions = std::move(split.decisions);
+  FollowInstances(report);
   report->split_seconds = stopwatch.Restart();
 }
 
@@ -182,13 +183,32 @@ void SplitFusion::RestartLostSurfaces(FrameReport* report) {
       tracked += motions.tracked;
     }
     if (tracked > options_.max_lost_young) continue;
-    lost.label = surfaces_.at(lost.id)->label();
-    lost.kind = surfaces_.at(lost.id)->kind();
-    surfaces_.erase(lost.id);
-    velocities_.erase(lost.id);
-    last_world_from_canonical_.erase(lost.id);
     on_end = 0;
-    lost.state = "dropped";
+    Drop(lost.id, "dropped", &lost);
+  }
+}
+
+void SplitFusion::Drop(int id, const std::string& state,
+                       SurfaceReport* report) {
+  report->id = id;
+  report->label = surfaces_.at(id)->label();
+  report->kind = surfaces_.at(id)->kind();
+  report->state = state;
+  surfaces_.erase(id);
+  velocities_.erase(id);
+  last_world_from_canonical_.erase(id);
+}
+
+void SplitFusion::FollowInstances(FrameReport* report) {
+  for (const auto& [id, instance] : splitter_.instances()) {
+    const auto found = surfaces_.find(id);
+    if (found == surfaces_.end()) continue;
+    found->second->set_dormant(instance.dormant);
+    found->second->set_label(instance.class_name);
+    if (instance.merged_into == 0) continue;
+    SurfaceReport merged;
+    Drop(id, "merged", &merged);
+    report->surfaces.push_back(std::move(merged));
   }
 }
 
@@ -232,8 +252,9 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   trajectory_.push_back({frame.timestamp, world_from_camera});
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
-    if (surface_report.state == "dropped") continue;
-    Surface& surface = *surfaces_.at(id);
+    const auto found = surfaces_.find(id);
+    if (found == surfaces_.end()) continue;  // Dropped or merged.
+    Surface& surface = *found->second;
     const auto seen = pixels.find(id);
     surface_report.pixels = seen == pixels.end() ? 0 : seen->second;
     surface_report.label = surface.label();

@@ -72,7 +72,9 @@ class SplitFusion {
   void TrackBackground(FrameReport* report);
   void TrackObjects(FrameReport* report);
   void Fuse(FrameReport* report);
+  void FollowInstances(FrameReport* report);
   void RestartLostSurfaces(FrameReport* report);
+  void Drop(int id, const std::string& state, SurfaceReport* report);
   void AddNewSurfaces(const Frame& frame, FrameReport* report);
   void Record(const Frame& frame, FrameReport* report);
   Rigid3d WorldFromCamera() const;

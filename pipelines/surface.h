@@ -61,6 +61,9 @@ class Surface {
   void set_label(const std::string& label) { label_ = label; }
   SurfaceKind kind() const { return kind_; }
   int first_frame() const { return first_frame_; }
+  /// Out of view or missed too long: kept, but neither tracked nor drawn.
+  bool dormant() const { return dormant_; }
+  void set_dormant(bool dormant) { dormant_ = dormant; }
   bool is_background() const { return id_ == 0; }
   /// Drawn by ray casting, not from the mesh.
   bool is_ray_cast() const {
@@ -84,6 +87,7 @@ class Surface {
   std::string label_;
   SurfaceKind kind_;
   int first_frame_;
+  bool dormant_ = false;
   SurfaceOptions options_;
   TsdfVolume volume_;
   WarpedIntegrator integrator_;

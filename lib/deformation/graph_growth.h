@@ -15,8 +15,8 @@ struct GraphOptions {
   /// between linear in the depth at birth.
   double near_spacing = 0.025;
   double far_spacing = 0.040;
-  double near_depth = 1.0;  ///< Metres; up to here `near_spacing`.
-  double far_depth = 2.0;   ///< Metres; from here `far_spacing`.
+  double near_depth = 0.7;  ///< Metres; up to here `near_spacing`.
+  double far_depth = 1.5;   ///< Metres; from here `far_spacing`.
   int max_nodes = 2000;     ///< Per surface; the spacing grows to keep it.
 
   /// @throw InputError if a value is out of its range.

@@ -26,8 +26,9 @@ struct SurfaceReport {
   std::string label;                       ///< Class name.
   SurfaceKind kind = SurfaceKind::kRigid;  ///< How it is tracked.
   /// "tracked", "born", "lost" (a frame that failed; motion kept, nothing
-  /// fused), "unseen" (not in view) or "dropped" (a young surface that was lost
-  /// too often and begins anew).
+  /// fused), "unseen" (not in view), "dropped" (a young surface that was lost
+  /// too often and begins anew) or "merged" (it turned out to be a part of
+  /// another surface).
   std::string state;
   std::string reason;       ///< Why lost; empty otherwise.
   int pixels = 0;           ///< Live pixels with depth of this surface.
