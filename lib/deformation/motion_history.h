@@ -21,7 +21,7 @@ struct FrameMotions {
 /// then), so that every vertex of the final model can be carried to every
 /// frame since the surface's birth.
 struct MotionHistory {
-  std::vector<FrameMotions> frames;
+  std::vector<FrameMotions> frames;  ///< Ascending by frame index.
 
   /// Motions of a frame; null if the surface has none for it.
   const FrameMotions* Find(int frame) const;

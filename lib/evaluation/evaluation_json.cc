@@ -108,7 +108,9 @@ Json ToJson(const TrajectoryError& error) {
           {"path_length", error.path_length},
           {"ate", StatisticsJson(error.absolute)},
           {"rpe", relative},
-          {"truth_from_estimate", PoseJson(error.truth_from_estimate)}};
+          {"truth_from_estimate", PoseJson(error.truth_from_estimate)},
+          {"truth_from_estimate_by_poses",
+           PoseJson(error.truth_from_estimate_by_poses)}};
 }
 
 Json ToJson(const SurfaceError& error) {

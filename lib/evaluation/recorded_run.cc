@@ -56,10 +56,10 @@ void ReadFrameLines(const std::string& path,
   }
 }
 
-/// The value of --sequence in a flagfile; empty if there is none.
-std::string SequenceOfFlags(const std::string& path) {
+/// The value of a flag in a flagfile; empty if there is none.
+std::string FlagValue(const std::string& path, const std::string& name) {
   std::ifstream stream(path);
-  const std::string flag = "--sequence=";
+  const std::string flag = "--" + name + "=";
   for (std::string line; std::getline(stream, line);) {
     if (line.rfind(flag, 0) == 0) return line.substr(flag.size());
   }
@@ -68,9 +68,12 @@ std::string SequenceOfFlags(const std::string& path) {
 
 std::optional<PinholeCamera> FindCamera(const fs::path& root) {
   std::optional<Calibration> found = FindCalibration(root.string());
-  const std::string sequence =
-      SequenceOfFlags((root / "options.flags").string());
-  if (!found && !sequence.empty()) found = FindCalibration(sequence);
+  const std::string flags = (root / "options.flags").string();
+  const std::string sequence = FlagValue(flags, "sequence");
+  // Intrinsics of the command line overrule those beside the sequence.
+  if (!found && !sequence.empty() && FlagValue(flags, "intrinsics").empty()) {
+    found = FindCalibration(sequence);
+  }
   if (!found) return std::nullopt;
   return found->camera;
 }

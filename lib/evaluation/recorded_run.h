@@ -37,7 +37,8 @@ struct RecordedRun {
   std::vector<RecordedFrame> frames;      ///< By index.
   std::vector<RecordedSurface> surfaces;  ///< By id.
   /// Intrinsics of the live camera: of `calibration.txt` or `camera.txt` in
-  /// the run directory, or else beside the sequence that options.flags names.
+  /// the run directory, or else beside the sequence that options.flags names
+  /// (unless it has --intrinsics too).
   std::optional<PinholeCamera> camera;
 
   /// The frame of an index; null if the run has none.

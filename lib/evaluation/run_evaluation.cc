@@ -30,10 +30,10 @@ void EvaluateBackground(const std::vector<AnimatedSurface>& surfaces,
   } else if (found == surfaces.end() || found->recorded().mesh.empty()) {
     result->skipped.push_back("background surface: the run has none");
   } else {
-    result->background =
-        CompareSurfaces(Transformed(found->recorded().mesh,
-                                    result->trajectory.truth_from_estimate),
-                        ReadTrueSurface(truth.static_mesh), options);
+    result->background = CompareSurfaces(
+        Transformed(found->recorded().mesh,
+                    result->trajectory.truth_from_estimate_by_poses),
+        ReadTrueSurface(truth.static_mesh), options);
   }
 }
 

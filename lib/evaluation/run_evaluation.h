@@ -44,7 +44,8 @@ struct RunEvaluation {
   std::string run;             ///< The run directory.
   std::string ground_truth;    ///< Folder of groundtruth.txt.
   TrajectoryError trajectory;  ///< ATE, RPE, alignment.
-  /// The background's mesh, put into the true world by the ATE's alignment.
+  /// The background's mesh, put into the true world by
+  /// TrajectoryError::truth_from_estimate_by_poses.
   std::optional<SurfaceError> background;
   std::vector<InstanceError> instances;   ///< By instance.
   std::optional<TrackEvaluation> tracks;  ///< Track error.

@@ -1,5 +1,6 @@
 #include "splitfusion/lib/evaluation/trajectory_error.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -56,6 +57,25 @@ Eigen::Matrix3Xd Positions(const std::vector<Rigid3d>& poses) {
     positions.col(static_cast<Eigen::Index>(i)) = poses[i].translation();
   }
   return positions;
+}
+
+/// Chordal mean of R_truth R_estimate^T over all pairs; translation by the
+/// means of the positions.
+Rigid3d AlignPoses(const MatchedPoses& poses) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < poses.size(); ++i) {
+    sum += poses.truth[i].linear() * poses.estimate[i].linear().transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(
+      sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d signs = Eigen::Matrix3d::Identity();
+  signs(2, 2) = (svd.matrixU() * svd.matrixV()).determinant() < 0 ? -1 : 1;
+  Rigid3d alignment = Rigid3d::Identity();
+  alignment.linear() = svd.matrixU() * signs * svd.matrixV().transpose();
+  alignment.translation() =
+      Positions(poses.truth).rowwise().mean() -
+      alignment.linear() * Positions(poses.estimate).rowwise().mean();
+  return alignment;
 }
 
 double PathLength(const std::vector<Rigid3d>& poses) {
@@ -151,6 +171,7 @@ TrajectoryError CompareTrajectories(Trajectory estimate, Trajectory truth,
   result.truth_from_estimate.matrix() =
       Eigen::umeyama(Positions(poses.estimate), Positions(poses.truth),
                      /*with_scaling=*/false);
+  result.truth_from_estimate_by_poses = AlignPoses(poses);
   result.absolute = AbsoluteError(poses, result.truth_from_estimate);
   for (const int step : options.relative_frames) {
     if (poses.size() > step) {

@@ -34,8 +34,14 @@ struct TrajectoryError {
   double path_length = 0;    ///< Of the matched ground truth, metres.
   ErrorStatistics absolute;  ///< ATE: after alignment, metres.
   std::vector<RelativePoseError> relative;  ///< RPE, by step.
-  /// The alignment: world of the ground truth from world of the estimate.
+  /// The alignment of the ATE, by the positions: world of the ground truth from
+  /// world of the estimate. Over a short or straight path its rotation is
+  /// poorly known: millimetres over a path of decimetres are degrees.
   Rigid3d truth_from_estimate = Rigid3d::Identity();
+  /// The same by whole poses: the mean of the rotations that turn each
+  /// estimated camera into the true one, and the translation that fits then. To
+  /// be used for placing surfaces.
+  Rigid3d truth_from_estimate_by_poses = Rigid3d::Identity();
 };
 
 /// Pairs (estimate, truth) of indices by nearest time stamp, each pose used at

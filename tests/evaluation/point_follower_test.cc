@@ -89,10 +89,8 @@ TEST_F(FollowPointsTest, SurfaceBornLaterTakesThePointUp) {
   EXPECT_LT((followed.points.back().position - truth).norm(), 0.005);
 }
 
-TEST_F(FollowPointsTest, MaskDecidesBetweenNearSurfaces) {
+TEST_F(FollowPointsTest, MasksOfTheRunAreUsed) {
   Load();
-  // 4 cm in front of the plate: too far to be preferred to the wall by
-  // nearness alone, but there is no wall within reach.
   const Eigen::Vector3d point(0, 0, 0.96);
   EXPECT_FALSE(Follow(point).by_mask);
   std::filesystem::create_directories(folder_ / "run/masks");

@@ -55,7 +55,7 @@ TEST_F(RunEvaluationTest, PerfectRunHasNoErrors) {
   const RunEvaluation evaluation = Evaluate();
   EXPECT_EQ(evaluation.trajectory.matched, 12);
   EXPECT_LT(evaluation.trajectory.absolute.max, 1e-6);
-  EXPECT_TRUE(evaluation.trajectory.truth_from_estimate.isApprox(
+  EXPECT_TRUE(evaluation.trajectory.truth_from_estimate_by_poses.isApprox(
       BentPlate::TrueWorldFromWorld(), 1e-4));
   ASSERT_TRUE(evaluation.background);
   EXPECT_LT(evaluation.background->accuracy.statistics.max, 1e-4);

@@ -39,6 +39,7 @@ TEST(CompareTrajectories, RigidMotionOfTheWorldIsNoError) {
   EXPECT_EQ(error.matched, 40);
   EXPECT_LT(error.absolute.max, 1e-12);
   EXPECT_TRUE(error.truth_from_estimate.isApprox(motion, 1e-9));
+  EXPECT_TRUE(error.truth_from_estimate_by_poses.isApprox(motion, 1e-9));
   ASSERT_EQ(error.relative.size(), 2u);
   EXPECT_LT(error.relative[1].translation.max, 1e-12);
   EXPECT_LT(error.relative[1].rotation_degrees.max, 1e-5);
@@ -61,6 +62,26 @@ TEST(CompareTrajectories, SaddleOfASquareCannotBeAligned) {
   EXPECT_NEAR(ate.rmse, e, 1e-12);
   EXPECT_NEAR(ate.median, e, 1e-12);
   EXPECT_NEAR(ate.max, e, 1e-12);
+}
+
+TEST(CompareTrajectories, AlignmentByPosesHoldsOnAStraightPath) {
+  // About a straight line positions say nothing of the rotation; 1 mm to the
+  // side over a path of 0.1 m turns the world by half a degree.
+  Trajectory truth;
+  Trajectory estimate;
+  for (int i = 0; i < 11; ++i) {
+    TimedPose pose;
+    pose.timestamp = i;
+    pose.world_from_camera.translation() = Eigen::Vector3d(0.01 * i, 0, 0);
+    truth.push_back(pose);
+    pose.world_from_camera.translation().y() = 1e-4 * i;
+    estimate.push_back(pose);
+  }
+  const TrajectoryError error = CompareTrajectories(estimate, truth);
+  EXPECT_GT(RotationAngle(error.truth_from_estimate.linear()), 0.009);
+  const Rigid3d& alignment = error.truth_from_estimate_by_poses;
+  EXPECT_LT(RotationAngle(alignment.linear()), 1e-9);
+  EXPECT_NEAR(alignment.translation().y(), -5e-4, 1e-9);
 }
 
 TEST(CompareTrajectories, DriftShowsInTheRelativeError) {
