@@ -1,6 +1,7 @@
 #include "splitfusion/cost_functions/builtin_terms.h"
 
 #include "splitfusion/cost_functions/arap.h"
+#include "splitfusion/cost_functions/color_constancy.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
 
 namespace splitfusion {
@@ -9,6 +10,8 @@ TermRegistry BuiltinTerms() {
   TermRegistry registry;
   registry.Register("point_to_plane",
                     [] { return std::make_unique<PointToPlaneTerm>(); });
+  registry.Register("color",
+                    [] { return std::make_unique<ColorConstancyTerm>(); });
   registry.Register("arap", [] { return std::make_unique<ArapTerm>(); });
   return registry;
 }

@@ -5,7 +5,8 @@
 
 namespace splitfusion {
 
-/// Registry with the built-in terms: point_to_plane (Eq. 5), arap (Eq. 6).
+/// Registry with the built-in terms: point_to_plane (Eq. 5), arap (Eq. 6)
+/// and color (not in the paper).
 TermRegistry BuiltinTerms();
 
 }  // namespace splitfusion

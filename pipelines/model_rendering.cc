@@ -106,6 +106,8 @@ std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
                  sample.point = Interpolated(surface.mesh().vertices, triangle,
                                              weights);
                  sample.normal = ToEigen(normal);
+                 sample.intensity = Intensity(
+                     InterpolatedColor(surface.mesh(), triangle, weights));
                  sample.u = u * stride;
                  sample.v = v * stride;
                  samples.push_back(sample);
@@ -130,9 +132,10 @@ std::vector<ModelSample> RayCastSamples(const Surface& background,
   const Rigid3d camera_from_canonical = MeanRigidMotion(background.graph());
   const Rigid3f canonical_from_camera =
       camera_from_canonical.inverse().cast<float>();
-  const cv::Mat_<float> depth =
-      RayCastDepth(background.volume(), camera_from_canonical,
-                   camera.Subsampled(stride), options);
+  const ModelMap cast = RayCast(background.volume(), camera_from_canonical,
+                                camera.Subsampled(stride), options);
+  cv::Mat_<float> depth;
+  cv::extractChannel(cast.points, depth, 2);
   const PointMap map = ComputePointMap(depth, camera.Subsampled(stride));
   std::vector<ModelSample> samples;
   for (int v = 0; v < depth.rows; ++v) {
@@ -142,6 +145,7 @@ std::vector<ModelSample> RayCastSamples(const Surface& background,
       ModelSample sample;
       sample.point = canonical_from_camera * ToEigen(map.points(v, u));
       sample.normal = canonical_from_camera.linear() * ToEigen(normal);
+      sample.intensity = Intensity(cast.color(v, u));
       sample.u = u * stride;
       sample.v = v * stride;
       sample.skinning.count = 1;

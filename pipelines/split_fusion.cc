@@ -129,7 +129,8 @@ void SplitFusion::TrackBackground(FrameReport* report) {
           : VisibleSamples(rendering_, background, options_.render_stride);
   surface.render_seconds = stopwatch.Restart();
   const Rigid3d predicted = MeanRigidMotion(background.graph());
-  tracker_.Track(samples, live_, 0, background.mutable_graph(), &surface);
+  tracker_.Track(samples, live_, 0, velocities_.at(0).inverse(),
+                 background.mutable_graph(), &surface);
   // A camera motion moves every surface.
   const Rigid3d correction =
       MeanRigidMotion(background.graph()) * predicted.inverse();
@@ -154,7 +155,10 @@ void SplitFusion::TrackObjects(FrameReport* report) {
       const std::vector<ModelSample> samples =
           VisibleSamples(rendering_, *surface, options_.render_stride);
       surface_report.render_seconds = stopwatch.Restart();
-      tracker_.Track(samples, live_, static_cast<std::uint16_t>(id),
+      const Rigid3d world_from_camera = WorldFromCamera();
+      const Rigid3d still = world_from_camera.inverse() *
+                            velocities_.at(id).inverse() * world_from_camera;
+      tracker_.Track(samples, live_, static_cast<std::uint16_t>(id), still,
                      surface->mutable_graph(), &surface_report);
     }
     report->surfaces.push_back(std::move(surface_report));

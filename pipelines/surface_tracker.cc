@@ -123,6 +123,7 @@ void TrackerOptions::Check() const {
               min_accepted, "0..1");
   CheckOption(max_translation > 0, "max_translation", max_translation,
               "metres > 0");
+  CheckOption(velocity_gain > 0, "velocity_gain", velocity_gain, "> 0");
   CheckOption(max_rotation > 0, "max_rotation", max_rotation, "radians > 0");
 }
 
@@ -137,9 +138,15 @@ SurfaceTracker::SurfaceTracker(TrackerOptions options, SolverOptions solver,
 
 void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
                            const LiveView& live, std::uint16_t surface,
-                           DeformationGraph* graph,
+                           const Rigid3d& still, DeformationGraph* graph,
                            SurfaceReport* report) const {
-  const DeformationGraph predicted = *graph;
+  DeformationGraph predicted = *graph;
+  DeformationGraph stayed = predicted;
+  ApplyRigidMotion(still, &stayed);
+  if (Misfit(samples, live, surface, predicted) >
+      options_.velocity_gain * Misfit(samples, live, surface, stayed)) {
+    predicted = stayed;
+  }
   bool tracked = TrackFrom(predicted, samples, live, surface, graph, report);
   if (!tracked && surface != 0) {
     DeformationGraph moved = predicted;
@@ -149,6 +156,31 @@ void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
   }
   report->state = tracked ? "tracked" : "lost";
   if (!tracked) *graph = predicted;
+}
+
+double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
+                              const LiveView& live, std::uint16_t surface,
+                              const DeformationGraph& graph) const {
+  const TrackingStage stage = FittedStage(
+      options_.rigid.front(), options_.min_samples / 4, samples);
+  const WarpField warp(graph);
+  const Association association = Associate(samples, warp, live, surface,
+                                            stage.stride, stage.gates);
+  const AssociationCounts& counts = association.counts;
+  // Truncated at 2 cm and at a fifth of the grey range; a sample that fits
+  // nowhere counts 1 for each.
+  double sum = 2.0 * (counts.distance + counts.normal_angle +
+                      counts.other_surface);
+  for (const Correspondence& c : association.correspondences) {
+    const double distance =
+        c.warped_normal.dot(warp.WarpPoint(c.model.skinning, c.model.point) -
+                            c.target) *
+        std::sqrt(c.weight) / 0.02;
+    const double difference = c.intensity_difference / 0.2;
+    sum += std::min(1.0, distance * distance) +
+           std::min(1.0, difference * difference);
+  }
+  return sum / std::max(1, counts.model_points);
 }
 
 bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
@@ -228,7 +260,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   bool settled = true;
   if (!association.correspondences.empty()) {
     round.solver = MinimizeWithCeres(
-        {energy_, association.correspondences, prior_factor}, solver_, graph);
+        {energy_, association.correspondences, live.camera, prior_factor}, solver_, graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||
               round.solver.initial_cost - round.solver.final_cost <

@@ -35,6 +35,9 @@ struct TrackerOptions {
   /// ... or if the surface moved farther than predicted by this much.
   double max_translation = 0.35;  ///< Metres.
   double max_rotation = 0.6;      ///< Radians.
+  /// The constant-velocity prediction is believed if its misfit is below this
+  /// fraction of that of standing still.
+  double velocity_gain = 0.85;
 
   /// A surface with fewer samples than this at a stage's stride is tracked at
   /// half of it, down to the model map's own.
@@ -56,14 +59,20 @@ class SurfaceTracker {
   SurfaceTracker(TrackerOptions options, SolverOptions solver, Energy energy);
 
   /// Moves the graph, which comes in at the predicted motions, so that the
-  /// samples lie on the live pixels of `surface`. If that fails, an object is
+  /// samples lie on the live pixels of `surface`. `still` is the rigid motion of
+  /// the camera frame that takes the prediction back to where the surface was:
+  /// tracking starts there unless the prediction fits clearly better, so that
+  /// a motion which the data do not determine does not carry itself on. If
+  /// tracking fails, an object is
   /// tried again from where its live pixels are. A frame that fails leaves the
   /// graph as it came; the report's state is then "lost" and says why.
   void Track(const std::vector<ModelSample>& samples, const LiveView& live,
-             std::uint16_t surface, DeformationGraph* graph,
-             SurfaceReport* report) const;
+             std::uint16_t surface, const Rigid3d& still,
+             DeformationGraph* graph, SurfaceReport* report) const;
 
  private:
+  double Misfit(const std::vector<ModelSample>& samples, const LiveView& live,
+                std::uint16_t surface, const DeformationGraph& graph) const;
   bool TrackFrom(const DeformationGraph& start,
                  const std::vector<ModelSample>& samples, const LiveView& live,
                  std::uint16_t surface, DeformationGraph* graph,

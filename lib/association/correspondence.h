@@ -12,6 +12,7 @@ namespace splitfusion {
 struct ModelSample {
   Eigen::Vector3f point;   ///< Canonical, metres.
   Eigen::Vector3f normal;  ///< Canonical, unit length, outward.
+  float intensity = 0;     ///< Grey value of the model's colour, 0..1.
   int u = 0;               ///< Column of the full image it was rendered at.
   int v = 0;               ///< Row of the full image it was rendered at.
   Skinning skinning;       ///< Nodes that carry it.
@@ -26,6 +27,13 @@ struct Correspondence {
   /// Confidence, (sigma_0 / sigma(z))^2 with the depth noise sigma; residuals
   /// are multiplied by its root, so that near and far points agree in noise.
   float weight = 1;
+  /// Live pixel at which the model point was seen when associated.
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();
+  /// Live grey value there less that of the model, 0..1, after the common
+  /// change of brightness was taken out; 0 if the model's is not known.
+  float intensity_difference = 0;
+  /// Derivative of the live grey value by column and row, 1 / pixel.
+  Eigen::Vector2f intensity_gradient = Eigen::Vector2f::Zero();
 };
 
 }  // namespace splitfusion

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "splitfusion/lib/base/error.h"
 
@@ -41,6 +42,19 @@ cv::Mat_<float> WithoutPinholes(const cv::Mat_<float>& depth,
     }
   }
   return filled;
+}
+
+/// Smoothed grey values and their derivatives.
+void ComputeIntensity(const cv::Mat& color, LiveView* view) {
+  cv::Mat grey;
+  cv::cvtColor(color, grey, cv::COLOR_BGR2GRAY);
+  grey.convertTo(view->intensity, CV_32F, 1.0 / 255);
+  cv::GaussianBlur(view->intensity, view->intensity, cv::Size(), 1.2);
+  cv::Mat by_u, by_v;
+  constexpr double kSobelScale = 1.0 / 8;
+  cv::Sobel(view->intensity, by_u, CV_32F, 1, 0, 3, kSobelScale);
+  cv::Sobel(view->intensity, by_v, CV_32F, 0, 1, 3, kSobelScale);
+  cv::merge(std::vector<cv::Mat>{by_u, by_v}, view->intensity_gradient);
 }
 
 /// 255 where a pixel lies next to a jump of depth (either side of it).
@@ -93,6 +107,7 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
   view.depth = WithoutPinholes(depth, focal_length);
   view.map = ComputePointMap(view.depth, camera);
   view.color = color;
+  ComputeIntensity(color, &view);
   view.edges = DepthEdges(view.depth, focal_length);
   view.labels.create(depth.size());
   view.labels.setTo(0);

@@ -14,6 +14,8 @@ struct LiveView {
   PinholeCamera camera;
   PointMap map;                   ///< Points and normals, camera frame.
   cv::Mat color;                  ///< 8UC3, BGR.
+  cv::Mat_<float> intensity;      ///< Smoothed grey value, 0..1.
+  cv::Mat_<cv::Vec2f> intensity_gradient;  ///< By column and row, 1 / pixel.
   cv::Mat_<float> depth;          ///< Metres, 0 = none; pinholes filled.
   cv::Mat_<float> confidence;     ///< (sigma_0 / sigma(z))^2 at most 1, times
                                   ///< the cosine of the viewing angle.
@@ -29,6 +31,11 @@ constexpr float kReferenceDepth = 1.4f;
 inline float DepthConfidence(float depth) {
   const float ratio = DepthSigma(kReferenceDepth) / DepthSigma(depth);
   return ratio < 1 ? ratio * ratio : 1.0f;
+}
+
+/// Grey value of a BGR colour, 0..1.
+inline float Intensity(const cv::Vec3b& bgr) {
+  return (0.114f * bgr[0] + 0.587f * bgr[1] + 0.299f * bgr[2]) / 255;
 }
 
 /// Builds points, normals, confidence and edges of a frame. Labels and

@@ -72,6 +72,16 @@ class Associator {
       return Outcome::kGrazing;
     }
     out->model = sample;
+    out->pixel = pixel;
+    const cv::Vec2f& gradient = live_.intensity_gradient(v, u);
+    out->intensity_gradient = Eigen::Vector2f(gradient[0], gradient[1]);
+    // First-order to the place between the pixels.
+    const float live_intensity =
+        live_.intensity(v, u) +
+        out->intensity_gradient.dot(
+            pixel - Eigen::Vector2f(static_cast<float>(u),
+                                    static_cast<float>(v)));
+    out->intensity_difference = live_intensity - sample.intensity;
     out->weight = DepthConfidence(out->target.z());
     return Outcome::kAccepted;
   }
@@ -82,6 +92,19 @@ class Associator {
   std::uint16_t surface_;
   float distance_, min_normal_cosine_, min_view_cosine_;
 };
+
+/// Takes the median difference of grey values, a change of exposure, out.
+void RemoveCommonBrightness(std::vector<Correspondence>* correspondences) {
+  if (correspondences->empty()) return;
+  std::vector<float> differences;
+  differences.reserve(correspondences->size());
+  for (const Correspondence& c : *correspondences) {
+    differences.push_back(c.intensity_difference);
+  }
+  const auto middle = differences.begin() + differences.size() / 2;
+  std::nth_element(differences.begin(), middle, differences.end());
+  for (Correspondence& c : *correspondences) c.intensity_difference -= *middle;
+}
 
 void Count(Outcome outcome, AssociationCounts* counts) {
   ++counts->model_points;
@@ -134,6 +157,7 @@ Association Associate(const std::vector<ModelSample>& samples,
       association.correspondences.push_back(matches[i]);
     }
   }
+  RemoveCommonBrightness(&association.correspondences);
   return association;
 }
 

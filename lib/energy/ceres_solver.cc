@@ -23,7 +23,7 @@ class CeresProblem {
  public:
   CeresProblem(const SurfaceProblem& input, const DeformationGraph& graph)
       : twists_(kTwistSize * graph.size(), 0.0), problem_(ProblemOptions()) {
-    const EnergyInput energy_input{graph, input.correspondences};
+    const EnergyInput energy_input{graph, input.correspondences, input.camera};
     for (int i = 0; i < graph.size(); ++i) {
       problem_.AddParameterBlock(&twists_[kTwistSize * i], kTwistSize);
     }

@@ -8,6 +8,7 @@
 #include "splitfusion/lib/association/correspondence.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/energy/residual_sink.h"
+#include "splitfusion/lib/geometry/camera.h"
 
 namespace splitfusion {
 
@@ -15,6 +16,7 @@ namespace splitfusion {
 struct EnergyInput {
   const DeformationGraph& graph;  ///< Motions are the linearisation point.
   const std::vector<Correspondence>& correspondences;
+  const PinholeCamera& camera;  ///< Live camera.
 };
 
 /// One term of the energy (SplitFusion Eq. 4).

@@ -39,6 +39,7 @@ struct SolverOptions {
 struct SurfaceProblem {
   const Energy& energy;
   const std::vector<Correspondence>& correspondences;
+  const PinholeCamera& camera;  ///< Live camera.
   double prior_factor = 1;  ///< Annealing: multiplies the priors' weights.
 };
 

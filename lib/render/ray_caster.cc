@@ -294,18 +294,6 @@ void RayCastOptions::Check() const {
   CheckOption(min_weight >= 0, "ray_min_weight", min_weight, ">= 0");
 }
 
-cv::Mat_<float> RayCastDepth(const TsdfVolume& volume,
-                             const Rigid3d& camera_from_canonical,
-                             const PinholeCamera& camera,
-                             const RayCastOptions& options) {
-  cv::Mat_<float> depths(camera.height, camera.width, 0.0f);
-  CastAll(volume, camera_from_canonical, camera, options,
-          [&](int v, int u, const Eigen::Vector3f&, float depth,
-              const Eigen::Vector3f&, const Eigen::Vector3f&,
-              Caster*) { depths(v, u) = depth; });
-  return depths;
-}
-
 ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
                  const PinholeCamera& camera, const RayCastOptions& options) {
   ModelMap map;

@@ -24,12 +24,6 @@ struct RayCastOptions {
 ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
                  const PinholeCamera& camera, const RayCastOptions& options);
 
-/// Only the z-depth of that, HxW, metres, 0 = nothing.
-cv::Mat_<float> RayCastDepth(const TsdfVolume& volume,
-                             const Rigid3d& camera_from_canonical,
-                             const PinholeCamera& camera,
-                             const RayCastOptions& options);
-
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_RENDER_RAY_CASTER_H_

@@ -1,0 +1,69 @@
+#ifndef SPLITFUSION_COST_FUNCTIONS_COLOR_CONSTANCY_H_
+#define SPLITFUSION_COST_FUNCTIONS_COLOR_CONSTANCY_H_
+
+#include <Eigen/Core>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "splitfusion/lib/energy/energy_term.h"
+
+namespace splitfusion {
+
+/// Difference of grey value between a warped model point and the live image.
+///
+///   r = m sqrt(c) [ I(pi(x)) - I_m ]
+///     ~ m sqrt(c) [ d + grad I . (pi(x) - u_0) ],   d = I(u_0) - I_m
+///
+/// x is the warped model point (Eq. 2), pi the pinhole projection, u_0 its
+/// pixel at the last association, about which the live image I is linear; I_m
+/// the grey value of the model's colour, c the confidence of the depth. The
+/// factor m = 0.05 m makes a step of 0.2 in grey value count like one
+/// centimetre. It ties a surface along itself, where Eq. 5 lets it slide; the
+/// paper has no such term, see docs/paper_map.md.
+///
+/// Residual: 1, metres * sqrt(confidence). Zero for motions along the view ray.
+struct ColorConstancy {
+  static constexpr int kResiduals = 1;
+  static constexpr double kMetresPerIntensity = 0.05;
+  double fx, fy, cx, cy;  ///< Live camera, pixels.
+  Eigen::Vector2d pixel;  ///< u_0, pixels.
+  Eigen::Vector2d gradient;  ///< grad I at u_0, 1 / pixel.
+  double difference = 0;     ///< d, 0..1.
+  double sqrt_confidence = 1;
+
+  /// `x`: warped point, camera frame, metres.
+  template <typename T>
+  bool operator()(const T* x, T* residual) const {
+    const T du = T(fx) * x[0] / x[2] + T(cx - pixel.x());
+    const T dv = T(fy) * x[1] / x[2] + T(cy - pixel.y());
+    residual[0] = T(kMetresPerIntensity * sqrt_confidence) *
+                  (T(difference) + T(gradient.x()) * du + T(gradient.y()) * dv);
+    return true;
+  }
+};
+
+/// Colour constancy over all correspondences.
+class ColorConstancyTerm : public EnergyTerm {
+ public:
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    std::vector<const ModelSample*> samples;
+    std::vector<ColorConstancy> functors;
+    samples.reserve(input.correspondences.size());
+    functors.reserve(input.correspondences.size());
+    const PinholeCamera& camera = input.camera;
+    for (const Correspondence& c : input.correspondences) {
+      samples.push_back(&c.model);
+      functors.push_back({camera.fx, camera.fy, camera.cx, camera.cy,
+                          c.pixel.cast<double>(),
+                          c.intensity_gradient.cast<double>(),
+                          c.intensity_difference, std::sqrt(c.weight)});
+    }
+    sink->AddWarpedPoints(samples, functors);
+  }
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_COST_FUNCTIONS_COLOR_CONSTANCY_H_
