@@ -259,7 +259,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   report->associate_seconds += stopwatch.Restart();
   bool settled = true;
   if (!association.correspondences.empty()) {
-    round.solver = MinimizeWithCeres(
+    round.solver = Minimize(
         {energy_, association.correspondences, live.camera, prior_factor}, solver_, graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

@@ -25,6 +25,7 @@ DEFINE_string(terms,
               splitfusion::PipelineOptions().terms,
               "The energy: NAME(weight=,loss=,scale=) ...");
 DEFINE_double(prior_anneal, 8, "First factor on the priors' weights.");
+DEFINE_string(solver, "gn_pcg", "gn_pcg (block Gauss-Newton) or ceres.");
 DEFINE_string(linear_solver, "auto",
               "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
               "or cgnr.");
@@ -93,6 +94,7 @@ void SetGates(TrackerOptions* tracker) {
 }
 
 void SetSolver(SolverOptions* solver) {
+  solver->solver = FLAGS_solver;
   solver->linear_solver = FLAGS_linear_solver;
   solver->preconditioner = FLAGS_preconditioner;
   solver->trust_region = FLAGS_trust_region;

@@ -8,6 +8,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/solver.h"
+#include "splitfusion/lib/energy/term_blocks.h"
 
 namespace splitfusion {
 namespace {
@@ -23,28 +24,23 @@ class CeresProblem {
  public:
   CeresProblem(const SurfaceProblem& input, const DeformationGraph& graph)
       : twists_(kTwistSize * graph.size(), 0.0), problem_(ProblemOptions()) {
-    const EnergyInput energy_input{graph, input.correspondences, input.camera};
     for (int i = 0; i < graph.size(); ++i) {
       problem_.AddParameterBlock(&twists_[kTwistSize * i], kTwistSize);
     }
-    for (const WeightedTerm& term : input.energy) {
-      const double factor = term.term->is_prior() ? input.prior_factor : 1.0;
-      ResidualSink sink(graph, term.options, factor);
-      term.term->AddResiduals(energy_input, &sink);
-      TermBlocks blocks;
-      blocks.cost.term = term.options.name;
-      blocks.cost.residual_vectors = sink.residual_vectors();
-      for (ResidualBlock& block : sink.blocks()) {
-        blocks.ids.push_back(Add(std::move(block)));
+    for (TermBlocks& term : CollectBlocks(input, graph)) {
+      AddedTerm added;
+      added.cost = term.cost;
+      for (ResidualBlock& block : term.blocks) {
+        added.ids.push_back(Add(std::move(block)));
       }
-      terms_.push_back(std::move(blocks));
+      terms_.push_back(std::move(added));
     }
   }
 
   /// Cost of every term at the current twists.
   std::vector<double> TermCosts() {
     std::vector<double> costs;
-    for (const TermBlocks& term : terms_) {
+    for (const AddedTerm& term : terms_) {
       double cost = 0;
       if (!term.ids.empty()) {
         ceres::Problem::EvaluateOptions options;
@@ -73,7 +69,7 @@ class CeresProblem {
   const std::vector<double>& twists() const { return twists_; }
 
  private:
-  struct TermBlocks {
+  struct AddedTerm {
     TermCost cost;
     std::vector<ceres::ResidualBlockId> ids;
   };
@@ -101,7 +97,7 @@ class CeresProblem {
   std::vector<double> twists_;
   std::vector<std::shared_ptr<ceres::LossFunction>> losses_;
   ceres::Problem problem_;
-  std::vector<TermBlocks> terms_;
+  std::vector<AddedTerm> terms_;
 };
 
 ceres::Solver::Options CeresOptions(const SolverOptions& options,
@@ -153,19 +149,11 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
   if (full_report) report->full_report = summary.FullReport();
 }
 
-void ComposeTwists(const std::vector<double>& twists, DeformationGraph* graph) {
-  for (int i = 0; i < graph->size(); ++i) {
-    const Eigen::Map<const Eigen::Vector3d> omega(&twists[kTwistSize * i]);
-    const Eigen::Map<const Eigen::Vector3d> tau(&twists[kTwistSize * i + 3]);
-    NodeMotion& motion = graph->motions[i];
-    motion.rotation = Orthonormalized(ExpSo3(omega) * motion.rotation);
-    motion.translation += tau;
-  }
-}
-
 }  // namespace
 
 void SolverOptions::Check() const {
+  CheckOption(solver == "ceres" || solver == "gn_pcg", "solver", solver,
+              "ceres or gn_pcg");
   ceres::LinearSolverType solver;
   CheckOption(linear_solver == "auto" ||
                   (ceres::StringToLinearSolverType(Upper(linear_solver),
@@ -195,6 +183,13 @@ void SolverOptions::Check() const {
   CheckOption(parameter_tolerance >= 0, "parameter_tolerance",
               parameter_tolerance, ">= 0");
   CheckOption(initial_radius > 0, "initial_radius", initial_radius, "> 0");
+}
+
+SolverReport Minimize(const SurfaceProblem& problem,
+                      const SolverOptions& options, DeformationGraph* graph) {
+  return options.solver == "ceres"
+             ? MinimizeWithCeres(problem, options, graph)
+             : MinimizeWithGaussNewton(problem, options, graph);
 }
 
 SolverReport MinimizeWithCeres(const SurfaceProblem& input,

@@ -13,6 +13,9 @@ namespace splitfusion {
 
 /// Options of the minimiser; names and values are Ceres' own.
 struct SolverOptions {
+  /// gn_pcg (block Gauss-Newton over the same residual blocks, see
+  /// MinimizeWithGaussNewton) or ceres, the reference.
+  std::string solver = "gn_pcg";
   /// "auto" (dense_normal_cholesky for a rigid surface, else
   /// sparse_normal_cholesky), dense_qr, dense_normal_cholesky,
   /// sparse_normal_cholesky, cgnr.
@@ -23,8 +26,8 @@ struct SolverOptions {
   std::string trust_region = "levenberg_marquardt";
   int threads = 1;         ///< Of Ceres; more change the last digits.
   int max_iterations = 2;  ///< Per association.
-  int max_linear_solver_iterations = 100;  ///< For cgnr.
-  double eta = 0.01;       ///< For cgnr: relative accuracy of a step.
+  int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.
+  double eta = 0.01;  ///< For cgnr and gn_pcg: relative accuracy of a step.
   double function_tolerance = 1e-5;
   double gradient_tolerance = 1e-10;
   double parameter_tolerance = 1e-8;
@@ -46,9 +49,20 @@ struct SurfaceProblem {
 /// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7) and
 /// composes them onto the motions: R_i <- exp(omega_i) R_i, t_i <- t_i + tau_i.
 /// The graph is unchanged unless the report says usable.
+SolverReport Minimize(const SurfaceProblem& problem,
+                      const SolverOptions& options, DeformationGraph* graph);
+
+/// The same by Ceres: the reference, with all its solvers.
 SolverReport MinimizeWithCeres(const SurfaceProblem& problem,
                                const SolverOptions& options,
                                DeformationGraph* graph);
+
+/// The same by Levenberg-Marquardt on assembled 6x6 blocks of J^T J, solved by
+/// block-Jacobi preconditioned conjugate gradients (Eq. 7 as the paper solves
+/// it). Residual blocks, losses and damping are those of Ceres.
+SolverReport MinimizeWithGaussNewton(const SurfaceProblem& problem,
+                                     const SolverOptions& options,
+                                     DeformationGraph* graph);
 
 }  // namespace splitfusion
 

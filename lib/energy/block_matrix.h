@@ -1,0 +1,61 @@
+#ifndef SPLITFUSION_LIB_ENERGY_BLOCK_MATRIX_H_
+#define SPLITFUSION_LIB_ENERGY_BLOCK_MATRIX_H_
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+namespace splitfusion {
+
+/// A 6x6 block and a 6-vector: one node's share of the normal equations.
+using Block6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// Symmetric positive semi-definite matrix of 6x6 blocks; the upper triangle is
+/// stored by rows.
+class SymmetricBlockMatrix {
+ public:
+  /// `pairs`: block positions (row, column), row <= column, any order,
+  /// repetitions allowed; the diagonal is always there.
+  SymmetricBlockMatrix(int nodes, std::vector<std::pair<int, int>> pairs);
+
+  /// Number of block rows.
+  int size() const { return static_cast<int>(row_begin_.size()) - 1; }
+  /// Number of stored blocks.
+  std::size_t block_count() const { return columns_.size(); }
+
+  /// Where block (row, column) is stored; row <= column and it is in `pairs`.
+  int Index(int row, int column) const;
+
+  /// Blocks by their index; zero at first.
+  std::vector<Block6>& blocks() { return blocks_; }
+
+  /// Diagonal block of a row.
+  const Block6& Diagonal(int row) const { return blocks_[row_begin_[row]]; }
+  Block6& Diagonal(int row) { return blocks_[row_begin_[row]]; }
+
+  /// y = A x.
+  void Multiply(const std::vector<Vector6>& x, std::vector<Vector6>* y) const;
+
+ private:
+  std::vector<int> row_begin_;
+  std::vector<int> columns_;
+  std::vector<Block6> blocks_;
+};
+
+/// Outcome of a conjugate gradient solution.
+struct CgResult {
+  int iterations = 0;
+  double relative_residual = 0;  ///< |b - A x| / |b|
+};
+
+/// Solves A x = b by conjugate gradients from x = 0, preconditioned by the
+/// inverses of the diagonal blocks, until the relative residual is below
+/// `tolerance` or `max_iterations` are done.
+CgResult SolveByPcg(const SymmetricBlockMatrix& a,
+                    const std::vector<Vector6>& b, double tolerance,
+                    int max_iterations, std::vector<Vector6>* x);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_BLOCK_MATRIX_H_

@@ -1,0 +1,27 @@
+#ifndef SPLITFUSION_LIB_ENERGY_TERM_BLOCKS_H_
+#define SPLITFUSION_LIB_ENERGY_TERM_BLOCKS_H_
+
+#include <vector>
+
+#include "splitfusion/lib/energy/solver.h"
+
+namespace splitfusion {
+
+/// The residual blocks of one term of a problem.
+struct TermBlocks {
+  TermCost cost;  ///< Name and number of residual vectors; no costs yet.
+  std::vector<ResidualBlock> blocks;
+};
+
+/// Asks every term of the energy for its residuals at the graph's motions; what
+/// all solvers start from.
+std::vector<TermBlocks> CollectBlocks(const SurfaceProblem& problem,
+                                      const DeformationGraph& graph);
+
+/// Composes the twists (6 per node, [omega, tau]) onto the motions:
+/// R_i <- exp(omega_i) R_i, t_i <- t_i + tau_i.
+void ComposeTwists(const std::vector<double>& twists, DeformationGraph* graph);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_TERM_BLOCKS_H_
