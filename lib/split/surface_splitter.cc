@@ -263,8 +263,9 @@ void SurfaceSplitter::AddSurface(const cv::Mat_<uchar>& pixels,
 void SurfaceSplitter::MergeCoveredSurfaces(Work* work) {
   for (Segment& part : work->segments) {
     if (part.surface == 0 || !part.mask.empty()) continue;
-    for (const Segment& body : work->segments) {
-      if (!IsCovered(part, body, *work)) continue;
+    for (std::size_t i = 0; i < work->segments.size(); ++i) {
+      const Segment& body = work->segments[i];
+      if (!IsCovered(part, static_cast<int>(i), *work)) continue;
       const int hits = registry_.CountCovered(part.surface, body.surface);
       if (hits < kCoveredFrames) continue;
       registry_.Merge(part.surface, body.surface);
@@ -275,15 +276,22 @@ void SurfaceSplitter::MergeCoveredSurfaces(Work* work) {
   }
 }
 
-bool SurfaceSplitter::IsCovered(const Segment& part, const Segment& body,
-                                const Work& work) {
+bool SurfaceSplitter::IsCovered(const Segment& part, int body_index,
+                                const Work& work) const {
+  const Segment& body = work.segments[body_index];
   if (body.mask.empty() || body.surface == 0 ||
       registry_.at(body.surface).class_name != part.class_name) {
     return false;
   }
   const Overlap overlap = ComputeOverlap(body.mask, part.surface,
                                          work.prior.labels, work.agreement);
-  return overlap.covered * overlap.agreement >= MatchOptions().min_contained;
+  const MatchOptions limits;
+  if (overlap.covered * overlap.agreement < limits.min_contained) return false;
+  const cv::Mat_<uchar> seen =
+      AgreeingPixels(part.surface, work.prior.labels, work.agreement);
+  return ContactShare(work.points, seen,
+                      PixelsOf(body_index, work.segment_labels)) >=
+         options_.min_contact;
 }
 
 void SurfaceSplitter::DrawLabels(Work* work) const {
