@@ -19,10 +19,10 @@ enum class Trust {
 
 /// One detection as the matcher sees it.
 struct Candidate {
-  cv::Mat_<uchar> mask;        ///< HxW, 255 inside.
-  Trust trust = Trust::kFull;  ///< How far it may be trusted.
-  std::string class_name;      ///< As the detector gave it.
-  double score = 1;            ///< 0..1.
+  cv::Mat_<uchar> mask;         ///< HxW, 255 inside.
+  Trust trust = Trust::kFull;   ///< How far it may be trusted.
+  std::string class_name = "";  ///< As the detector gave it.
+  double score = 1;             ///< 0..1.
 };
 
 /// How detections are matched to projected surfaces.

@@ -204,8 +204,10 @@ void SurfaceSplitter::SettleNewcomer(int index, Work* work) {
   }
   const bool large =
       CountWithDepth(pixels, work->frame.depth) >= options_.min_pixels;
-  if (large && IsConfirmed(segment, pixels, *work)) {
-    AddSurface(pixels, &segment, work);
+  // Who is known needs no confirmation.
+  const int known = large ? FindKnown(segment, pixels, *work) : 0;
+  if (known > 0 || (large && IsConfirmed(segment, pixels, *work))) {
+    AddSurface(known, &segment, work);
     return;
   }
   work->unconfirmed |= segment.mask | pixels;
@@ -245,15 +247,20 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
   return hits >= options_.birth_frames * (was_background ? 2 : 1);
 }
 
-void SurfaceSplitter::AddSurface(const cv::Mat_<uchar>& pixels,
-                                 Segment* segment, Work* work) {
+int SurfaceSplitter::FindKnown(const Segment& segment,
+                               const cv::Mat_<uchar>& pixels,
+                               const Work& work) const {
+  return registry_.FindDormant(
+      ComputeAppearance(work.frame.color, work.points, pixels),
+      table_.Kind(segment.class_name));
+}
+
+void SurfaceSplitter::AddSurface(int known, Segment* segment, Work* work) {
   births_.Remove(segment->mask);
-  const SurfaceKind kind = table_.Kind(segment->class_name);
-  const int known = registry_.FindDormant(
-      ComputeAppearance(work->frame.color, work->points, pixels), kind);
-  segment->surface = known > 0 ? known
-                               : registry_.Create(work->frame.index,
-                                                  segment->class_name, kind);
+  segment->surface =
+      known > 0 ? known
+                : registry_.Create(work->frame.index, segment->class_name,
+                                   table_.Kind(segment->class_name));
   registry_.RecordDetection(segment->surface, work->frame.index,
                             segment->class_name, segment->score);
   work->result.decisions.push_back(
