@@ -26,7 +26,9 @@ class LabelTable {
   /// @throw InputError on a missing file or a line that does not parse.
   static LabelTable FromFile(const std::string& path);
 
+  /// Sets or changes how a class is treated.
   void Set(const std::string& class_name, SurfaceKind kind);
+  /// How a class is treated; rigid if the table does not name it.
   SurfaceKind Kind(const std::string& class_name) const;
 
  private:

@@ -89,11 +89,13 @@ std::vector<Detection> DetectionsOfValues(const cv::Mat& labels,
 }
 
 /// Class of `STEM_CLASS.png` or `STEM_CLASS_NUMBER.png`; `_` is a space.
-std::string ClassOfFile(const std::string& name, const std::string& prefix) {
+std::string ClassOfFile(const std::string& name, const std::string& prefix,
+                        const std::string& unnamed_class) {
   std::string text = fs::path(name.substr(prefix.size())).stem().string();
   std::replace(text.begin(), text.end(), '_', ' ');
   const std::size_t last = text.find_last_not_of("0123456789");
-  if (last != std::string::npos && text[last] == ' ') text.erase(last);
+  if (last == std::string::npos) return unnamed_class;
+  if (text[last] == ' ') text.erase(last);
   return text;
 }
 
@@ -153,7 +155,8 @@ std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
   for (const std::string& name : instance_files_) {
     if (name.compare(0, prefix.size(), prefix) != 0) continue;
     AddInstance(ReadMask((root / name).string(), frame) != 0,
-                {1, ClassOfFile(name, prefix), 1.0}, &instances);
+                {1, ClassOfFile(name, prefix, unnamed_class_), 1.0},
+                &instances);
   }
   std::stable_sort(instances.begin(), instances.end(),
                    [](const InstanceMask& a, const InstanceMask& b) {

@@ -21,7 +21,8 @@ inline constexpr char kUnnamedRigidClass[] = "rigid_object";
 ///  - `STEM.png` alone: every value above 0 is an instance without class (a
 ///    0/255 mask is one);
 ///  - `STEM_CLASS.png`, any number: one instance each, inside where not 0;
-///    `_` in CLASS stands for a space, and `_NUMBER` may follow.
+///    `_` in CLASS stands for a space, and `_NUMBER` may follow
+///    or stand in its place.
 /// A frame without a file has no detections; a detection without a pixel is
 /// dropped.
 class MaskFolderSegmenter : public Segmenter {

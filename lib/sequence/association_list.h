@@ -14,8 +14,8 @@ struct TimedFile {
 
 /// Colour and depth image of one frame.
 struct AssociatedFiles {
-  TimedFile color;
-  TimedFile depth;
+  TimedFile color;  ///< Colour image.
+  TimedFile depth;  ///< Depth image.
 };
 
 /// Reads a TUM list: `timestamp file`, `#` comments.

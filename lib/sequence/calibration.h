@@ -10,7 +10,7 @@ namespace splitfusion {
 
 /// Intrinsics and depth scale of a sequence.
 struct Calibration {
-  PinholeCamera camera;
+  PinholeCamera camera;    ///< Intrinsics.
   double depth_scale = 0;  ///< Depth image units in a metre (TUM: 5000).
 
   /// @throw InputError if the camera or the scale is out of range.

@@ -24,7 +24,7 @@ struct TumReaderOptions {
   std::optional<PinholeCamera> camera;
   /// Units a metre; replaces that of the file; 0 = as the file says.
   double depth_scale = 0;
-  DepthFilterOptions depth_filter;
+  DepthFilterOptions depth_filter;  ///< Applied to every depth image.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;

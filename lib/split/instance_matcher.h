@@ -19,10 +19,10 @@ enum class Trust {
 
 /// One detection as the matcher sees it.
 struct Candidate {
-  cv::Mat_<uchar> mask;  ///< HxW, 255 inside.
-  Trust trust = Trust::kFull;
-  std::string class_name;
-  double score = 1;  ///< 0..1.
+  cv::Mat_<uchar> mask;         ///< HxW, 255 inside.
+  Trust trust = Trust::kFull;   ///< How far it may be trusted.
+  std::string class_name = "";  ///< As the detector gave it.
+  double score = 1;             ///< 0..1.
 };
 
 /// How detections are matched to projected surfaces.
@@ -57,7 +57,7 @@ std::vector<Match> MatchInstances(const std::vector<Candidate>& candidates,
 
 /// How a detection and a projected surface cover each other.
 struct Overlap {
-  double iou = 0;
+  double iou = 0;        ///< Intersection over union.
   double contained = 0;  ///< Share of the detection inside of the surface, at
                          ///< its depth.
   double covered = 0;    ///< Share of the surface inside of the detection.

@@ -15,9 +15,9 @@ namespace splitfusion {
 struct TrackedInstance {
   int id = 0;              ///< From 1, in order of birth, never reused.
   std::string class_name;  ///< Majority of its detections, by score.
-  SurfaceKind kind = SurfaceKind::kNonRigid;
-  int first_frame = 0;
-  int last_detected_frame = 0;
+  SurfaceKind kind = SurfaceKind::kNonRigid;  ///< Of its class at birth.
+  int first_frame = 0;                        ///< Frame of its birth.
+  int last_detected_frame = 0;  ///< Latest frame with a detection of it.
   bool dormant = false;  ///< Not followed: out of view or missed too long.
   int merged_into = 0;   ///< Surface it turned out to be a part of; 0 = none.
 };
@@ -50,6 +50,7 @@ class InstanceRegistry {
   /// Replaces the looks, once the pixels of a detected instance are known.
   void RecordAppearance(int id, const Appearance& appearance);
 
+  /// Stops following an instance until it is detected again.
   void SetDormant(int id) { instances_.at(id).dormant = true; }
 
   /// Counts a frame in which a detection of `body` covered `part` too, and
@@ -66,7 +67,9 @@ class InstanceRegistry {
   /// Ids that detections may be matched to: all but merged ones.
   std::set<int> Matchable() const;
 
+  /// The instance of an id that was born.
   const TrackedInstance& at(int id) const { return instances_.at(id); }
+  /// Every instance ever born, by id.
   const std::map<int, TrackedInstance>& instances() const { return instances_; }
 
  private:

@@ -13,12 +13,12 @@ namespace splitfusion {
 
 /// One surface, or one detection that may become one, in one frame.
 struct Segment {
-  int surface = 0;         ///< Id; 0 for a newcomer.
-  cv::Mat_<uchar> mask;    ///< Detected, HxW, 255 inside; empty if missed.
-  std::string class_name;  ///< Of the best detection.
-  double score = 0;        ///< Of the best detection; 0 if missed.
-  double iou = 0;          ///< Of the best detection and the projection.
-  SurfaceEvidence evidence;
+  int surface = 0;             ///< Id; 0 for a newcomer.
+  cv::Mat_<uchar> mask;        ///< Detected, HxW, 255 inside; empty if missed.
+  std::string class_name;      ///< Of the best detection.
+  double score = 0;            ///< Of the best detection; 0 if missed.
+  double iou = 0;              ///< Of the best detection and the projection.
+  SurfaceEvidence evidence;    ///< What the cut is made from.
   cv::Mat_<uchar> foreground;  ///< Cut, size of evidence.crop, 255 inside.
 };
 

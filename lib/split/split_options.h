@@ -12,9 +12,9 @@ namespace splitfusion {
 
 /// How detections become surfaces; defaults hold for TUM-like sequences.
 struct SplitOptions {
-  GraphCutOptions graph_cut;
-  PriorOptions prior;
-  UncertainOptions uncertain;
+  GraphCutOptions graph_cut;     ///< Edges of the cut.
+  PriorOptions prior;            ///< Evidence for it.
+  UncertainOptions uncertain;    ///< Background that is left alone.
   double min_score = 0.4;        ///< A detection below counts only if it covers
                                  ///< a known surface well.
   double max_area = 0.75;        ///< Fraction of the image; larger likewise.

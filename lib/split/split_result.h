@@ -17,10 +17,10 @@ struct SplitDecision {
   /// carried or given up. "pending", "ignored": a detection that may yet
   /// become a surface, or may not.
   std::string action;
-  int surface = 0;  ///< Surface id, 0 if none.
-  std::string class_name;
-  double score = 0;    ///< Of the detection; 0 if none.
-  double overlap = 0;  ///< IoU with the projected surface; 0 if none.
+  int surface = 0;         ///< Surface id, 0 if none.
+  std::string class_name;  ///< Of the detection, or of a missed surface.
+  double score = 0;        ///< Of the detection; 0 if none.
+  double overlap = 0;      ///< IoU with the projected surface; 0 if none.
 };
 
 /// Result of one frame.
@@ -29,7 +29,7 @@ struct SplitResult {
   /// HxW 8UC1: 255 where the pixel may be background but is too close to a
   /// foreign or unexplained instance to be tracked or fused as such.
   cv::Mat uncertain;
-  std::vector<SplitDecision> decisions;
+  std::vector<SplitDecision> decisions;  ///< In the order they were taken.
 };
 
 }  // namespace splitfusion

@@ -23,7 +23,7 @@ struct PriorOptions {
   double mask_weight = 0.25;        ///< Core of the detection's mask.
   double prediction_weight = 0.5;   ///< Agreement with the predicted surface.
   double background_weight = 0.15;  ///< Agreement with the background.
-  double unexplained_weight = 0.1;  ///< In front of the background.
+  double unexplained_weight = 0.2;  ///< In front of the background.
   double missed_weight = 0.1;     ///< Outside of the prediction, not detected.
   double surface_gate = 0.08;     ///< Metres, beside three times the noise.
   double background_gate = 0.03;  ///< Metres, beside three times the noise.

@@ -204,8 +204,10 @@ void SurfaceSplitter::SettleNewcomer(int index, Work* work) {
   }
   const bool large =
       CountWithDepth(pixels, work->frame.depth) >= options_.min_pixels;
-  if (large && IsConfirmed(segment, pixels, *work)) {
-    AddSurface(pixels, &segment, work);
+  // Who is known needs no confirmation.
+  const int known = large ? FindKnown(segment, pixels, *work) : 0;
+  if (known > 0 || (large && IsConfirmed(segment, pixels, *work))) {
+    AddSurface(known, &segment, work);
     return;
   }
   work->unconfirmed |= segment.mask | pixels;
@@ -245,15 +247,20 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
   return hits >= options_.birth_frames * (was_background ? 2 : 1);
 }
 
-void SurfaceSplitter::AddSurface(const cv::Mat_<uchar>& pixels,
-                                 Segment* segment, Work* work) {
+int SurfaceSplitter::FindKnown(const Segment& segment,
+                               const cv::Mat_<uchar>& pixels,
+                               const Work& work) const {
+  return registry_.FindDormant(
+      ComputeAppearance(work.frame.color, work.points, pixels),
+      table_.Kind(segment.class_name));
+}
+
+void SurfaceSplitter::AddSurface(int known, Segment* segment, Work* work) {
   births_.Remove(segment->mask);
-  const SurfaceKind kind = table_.Kind(segment->class_name);
-  const int known = registry_.FindDormant(
-      ComputeAppearance(work->frame.color, work->points, pixels), kind);
-  segment->surface = known > 0 ? known
-                               : registry_.Create(work->frame.index,
-                                                  segment->class_name, kind);
+  segment->surface =
+      known > 0 ? known
+                : registry_.Create(work->frame.index, segment->class_name,
+                                   table_.Kind(segment->class_name));
   registry_.RecordDetection(segment->surface, work->frame.index,
                             segment->class_name, segment->score);
   work->result.decisions.push_back(
@@ -263,8 +270,9 @@ void SurfaceSplitter::AddSurface(const cv::Mat_<uchar>& pixels,
 void SurfaceSplitter::MergeCoveredSurfaces(Work* work) {
   for (Segment& part : work->segments) {
     if (part.surface == 0 || !part.mask.empty()) continue;
-    for (const Segment& body : work->segments) {
-      if (!IsCovered(part, body, *work)) continue;
+    for (std::size_t i = 0; i < work->segments.size(); ++i) {
+      const Segment& body = work->segments[i];
+      if (!IsCovered(part, static_cast<int>(i), *work)) continue;
       const int hits = registry_.CountCovered(part.surface, body.surface);
       if (hits < kCoveredFrames) continue;
       registry_.Merge(part.surface, body.surface);
@@ -275,15 +283,22 @@ void SurfaceSplitter::MergeCoveredSurfaces(Work* work) {
   }
 }
 
-bool SurfaceSplitter::IsCovered(const Segment& part, const Segment& body,
-                                const Work& work) {
+bool SurfaceSplitter::IsCovered(const Segment& part, int body_index,
+                                const Work& work) const {
+  const Segment& body = work.segments[body_index];
   if (body.mask.empty() || body.surface == 0 ||
       registry_.at(body.surface).class_name != part.class_name) {
     return false;
   }
   const Overlap overlap = ComputeOverlap(body.mask, part.surface,
                                          work.prior.labels, work.agreement);
-  return overlap.covered * overlap.agreement >= MatchOptions().min_contained;
+  const MatchOptions limits;
+  if (overlap.covered * overlap.agreement < limits.min_contained) return false;
+  const cv::Mat_<uchar> seen =
+      AgreeingPixels(part.surface, work.prior.labels, work.agreement);
+  return ContactShare(work.points, seen,
+                      PixelsOf(body_index, work.segment_labels)) >=
+         options_.min_contact;
 }
 
 void SurfaceSplitter::DrawLabels(Work* work) const {

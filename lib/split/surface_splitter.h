@@ -72,9 +72,11 @@ class SurfaceSplitter {
                const Work& work) const;
   bool IsConfirmed(const Segment& segment, const cv::Mat_<uchar>& pixels,
                    const Work& work);
-  void AddSurface(const cv::Mat_<uchar>& pixels, Segment* segment, Work* work);
+  int FindKnown(const Segment& segment, const cv::Mat_<uchar>& pixels,
+                const Work& work) const;
+  void AddSurface(int known, Segment* segment, Work* work);
   void MergeCoveredSurfaces(Work* work);
-  bool IsCovered(const Segment& part, const Segment& body, const Work& work);
+  bool IsCovered(const Segment& part, int body_index, const Work& work) const;
   void DrawLabels(Work* work) const;
   void DrawUncertain(Work* work) const;
   void Remember(const Work& work);

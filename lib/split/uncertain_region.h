@@ -23,9 +23,9 @@ struct UncertainInput {
   LabelImage labels;            ///< Surfaces of this frame.
   cv::Mat_<uchar> unconfirmed;  ///< 255: detected, but no surface.
   cv::Mat_<uchar> detected;     ///< 255: in the mask of any surface.
-  LabelImage predicted_labels;
-  cv::Mat_<uchar> agreement;  ///< Of Agreement.
-  cv::Mat depth;              ///< 32FC1, metres, 0 = none.
+  LabelImage predicted_labels;  ///< Surfaces expected in this frame.
+  cv::Mat_<uchar> agreement;    ///< Of Agreement.
+  cv::Mat depth;                ///< 32FC1, metres, 0 = none.
 };
 
 /// Background pixels that must not be tracked or fused as background, 8UC1,

@@ -1,0 +1,125 @@
+#include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "support/expect_input_error.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+class MaskFolderSegmenterTest : public testing::Test {
+ protected:
+  MaskFolderSegmenterTest() {
+    frame_.stem = "000007";
+    frame_.color = cv::Mat(24, 32, CV_8UC3, cv::Scalar::all(0));
+    // Labels 1 (left, 4 columns) and 3 (right, 8 columns).
+    labels_ = cv::Mat(24, 32, CV_8UC1, cv::Scalar(0));
+    labels_.colRange(0, 4) = 1;
+    labels_.colRange(20, 28) = 3;
+  }
+
+  void WriteLabels(const std::string& name = "000007.png") {
+    cv::imwrite(folder_ / name, labels_);
+  }
+  std::vector<InstanceMask> Segment(
+      const std::string& unnamed_class = kUnnamedClass) {
+    return MaskFolderSegmenter(folder_ / "", unnamed_class).Segment(frame_);
+  }
+
+  TemporaryFolder folder_;
+  Frame frame_;
+  cv::Mat labels_;
+};
+
+TEST_F(MaskFolderSegmenterTest, JoinsLabelsWithTheirClassesBestFirst) {
+  WriteLabels();
+  folder_.Write("000007.json",
+                R"([{"index": 1, "class": "chair", "score": 0.5},
+                    {"index": 2, "class": "dog", "score": 0.9},
+                    {"index": 3, "class": "person", "score": 0.8}])");
+  const std::vector<InstanceMask> instances = Segment();
+  ASSERT_EQ(instances.size(), 2u);  // The dog has no pixel.
+  EXPECT_EQ(instances[0].class_name, "person");
+  EXPECT_DOUBLE_EQ(instances[0].score, 0.8);
+  EXPECT_EQ(cv::countNonZero(instances[0].mask), 8 * 24);
+  EXPECT_EQ(instances[0].mask.at<uchar>(0, 20), 255);
+  EXPECT_EQ(instances[1].class_name, "chair");
+  EXPECT_EQ(cv::countNonZero(instances[1].mask), 4 * 24);
+}
+
+TEST_F(MaskFolderSegmenterTest, EveryValueIsAnInstanceWithoutClasses) {
+  labels_.convertTo(labels_, CV_16U, 300);
+  WriteLabels();
+  const std::vector<InstanceMask> instances = Segment(kUnnamedRigidClass);
+  ASSERT_EQ(instances.size(), 2u);
+  EXPECT_EQ(instances[0].class_name, "rigid_object");
+  EXPECT_EQ(cv::countNonZero(instances[0].mask), 4 * 24);
+}
+
+TEST_F(MaskFolderSegmenterTest, ABinaryMaskIsOneObject) {
+  labels_ = labels_ > 0;
+  WriteLabels();
+  const std::vector<InstanceMask> instances = Segment();
+  ASSERT_EQ(instances.size(), 1u);
+  EXPECT_EQ(instances[0].class_name, "object");
+  EXPECT_DOUBLE_EQ(instances[0].score, 1.0);
+  EXPECT_EQ(cv::countNonZero(instances[0].mask), 12 * 24);
+}
+
+TEST_F(MaskFolderSegmenterTest, ReadsOneFilePerInstance) {
+  WriteLabels("000007_teddy_bear_2.png");
+  WriteLabels("000007_shirt.png");
+  WriteLabels("000007_1.png");
+  WriteLabels("000008_dog.png");
+  const std::vector<InstanceMask> instances = Segment();
+  ASSERT_EQ(instances.size(), 3u);
+  EXPECT_EQ(instances[0].class_name, "object");
+  EXPECT_EQ(instances[1].class_name, "shirt");
+  EXPECT_EQ(instances[2].class_name, "teddy bear");
+  EXPECT_EQ(cv::countNonZero(instances[2].mask), 12 * 24);
+}
+
+TEST_F(MaskFolderSegmenterTest, AFrameWithoutFileHasNoDetections) {
+  WriteLabels("000001.png");
+  EXPECT_TRUE(Segment().empty());
+}
+
+TEST_F(MaskFolderSegmenterTest, NamesBrokenInput) {
+  ExpectInputError([&] { Segment(); }, "0 png files");
+  ExpectInputError([&] { MaskFolderSegmenter segmenter(folder_ / "none"); },
+                   "no such folder");
+  WriteLabels();
+  folder_.Write("000007.json", "{\"index\": 1}");
+  ExpectInputError([&] { Segment(); }, "000007.json: no JSON list");
+  folder_.Write("000007.json", "[{\"class\": \"dog\"}]");
+  ExpectInputError([&] { Segment(); }, "expected an index of 1..65535");
+  folder_.Write("000007.json", "[{\"index\": 1, \"score\": 7}]");
+  ExpectInputError([&] { Segment(); }, "score of 0..1");
+  std::filesystem::remove(folder_ / "000007.json");
+  frame_.color = cv::Mat(48, 64, CV_8UC3);
+  ExpectInputError([&] { Segment(); },
+                   "000007.png: mask of 32x24: expected 64x48");
+}
+
+TEST_F(MaskFolderSegmenterTest, RefusesColourMasks) {
+  cv::imwrite(folder_ / "000007.png", frame_.color);
+  ExpectInputError([&] { Segment(); }, "expected a label image");
+}
+
+TEST(FindMaskFolder, PrefersDetections) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(FindMaskFolder(folder / ""), "");
+  folder.Write("mask/0.png", "");
+  EXPECT_EQ(FindMaskFolder(folder / ""), folder / "mask");
+  folder.Write("masks_noisy/0.png", "");
+  EXPECT_EQ(FindMaskFolder(folder / ""), folder / "mask");
+  folder.Write("masks_noisy/0.json", "[]");
+  EXPECT_EQ(FindMaskFolder(folder / ""), folder / "masks_noisy");
+}
+
+}  // namespace
+}  // namespace splitfusion

@@ -1,0 +1,73 @@
+#include "splitfusion/lib/sequence/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include "support/expect_input_error.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr char kKeys[] =
+    "# pinhole\nwidth 640\nheight 480\nfx 517.3\nfy 516.5\ncx 318.6\n"
+    "cy 255.3\n\ndepth_scale 5000\n";
+
+TEST(Calibration, ReadsTheOneLineFormat) {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.Write("calibration.txt",
+                   "# fx fy cx cy width height depth_factor\n"
+                   "535.4 539.2 320.1 247.6 640 480 1000  # Kinect\n");
+  const Calibration calibration = ReadCalibrationLine(path);
+  EXPECT_EQ(calibration.camera.width, 640);
+  EXPECT_EQ(calibration.camera.height, 480);
+  EXPECT_DOUBLE_EQ(calibration.camera.fx, 535.4);
+  EXPECT_DOUBLE_EQ(calibration.camera.cy, 247.6);
+  EXPECT_DOUBLE_EQ(calibration.depth_scale, 1000);
+}
+
+TEST(Calibration, ReadsTheKeyFormat) {
+  const TemporaryFolder folder;
+  const Calibration calibration =
+      ReadCalibrationKeys(folder.Write("camera.txt", kKeys));
+  EXPECT_EQ(calibration.camera.height, 480);
+  EXPECT_DOUBLE_EQ(calibration.camera.fy, 516.5);
+  EXPECT_DOUBLE_EQ(calibration.camera.cx, 318.6);
+  EXPECT_DOUBLE_EQ(calibration.depth_scale, 5000);
+}
+
+TEST(Calibration, IsFoundInEitherFormatOrNotAtAll) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(FindCalibration(folder / "").has_value());
+  folder.Write("camera.txt", kKeys);
+  EXPECT_DOUBLE_EQ(FindCalibration(folder / "")->camera.fx, 517.3);
+  folder.Write("calibration.txt", "500 500 320 240 640 480 1000\n");
+  EXPECT_DOUBLE_EQ(FindCalibration(folder / "")->camera.fx, 500);
+}
+
+TEST(Calibration, NamesWhatIsWrong) {
+  const TemporaryFolder folder;
+  const auto line = [&](const std::string& text) {
+    return [path = folder.Write("calibration.txt", text)] {
+      ReadCalibrationLine(path);
+    };
+  };
+  ExpectInputError(line("500 500 320 240 640\n"), "calibration.txt:1");
+  ExpectInputError(line("# nothing\n"), "no line");
+  ExpectInputError(line("-500 500 320 240 640 480 5000\n"), "camera fx = -500");
+  ExpectInputError(line("500 500 320 240 640 480 0\n"), "depth scale = 0");
+  ExpectInputError([&] { ReadCalibrationLine(folder / "none.txt"); },
+                   "none.txt: cannot be opened");
+}
+
+TEST(Calibration, NamesTheMissingKey) {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.Write("camera.txt", "width 640\nheight 480\nfx 500\n");
+  ExpectInputError([&] { ReadCalibrationKeys(path); }, "'fy VALUE'");
+  folder.Write("camera.txt", "width wide\n");
+  ExpectInputError([&] { ReadCalibrationKeys(path); }, "'width wide'");
+}
+
+}  // namespace
+}  // namespace splitfusion

@@ -1,0 +1,145 @@
+#include "splitfusion/lib/sequence/tum_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "support/expect_input_error.h"
+#include "support/shared_data.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+/// Three frames of 32x24 pixels; depth 1, 2 and 3 m.
+class TumReaderTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string list;
+    for (int i = 0; i < 3; ++i) {
+      const std::string n = std::to_string(i);
+      folder_.Write("rgb/c" + n + ".png", "");
+      folder_.Write("depth/d" + n + ".png", "");
+      cv::imwrite(folder_ / ("rgb/c" + n + ".png"),
+                  cv::Mat(24, 32, CV_8UC3, cv::Scalar(10, 20, 30 + i)));
+      WriteDepth(i, cv::Mat(24, 32, CV_16UC1, cv::Scalar(1000 * (i + 1))));
+      list += n + ".0 rgb/c" + n + ".png " + n + ".5 depth/d" + n + ".png\n";
+    }
+    folder_.Write("associations.txt", list);
+    folder_.Write("calibration.txt", "30 31 16 12 32 24 1000\n");
+  }
+
+  void WriteDepth(int i, const cv::Mat& depth) {
+    cv::imwrite(DepthPath(i), depth);
+  }
+  std::string DepthPath(int i) const {
+    return folder_ / ("depth/d" + std::to_string(i) + ".png");
+  }
+  /// Expects that the first frame is refused.
+  void ExpectRefused(const std::string& part) {
+    TumReader reader(folder_ / "");
+    ExpectInputError([&] { reader.Next(); }, part);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(TumReaderTest, GivesFramesInOrder) {
+  TumReader reader(folder_ / "");
+  EXPECT_EQ(reader.size(), 3);
+  EXPECT_EQ(reader.camera().width, 32);
+  EXPECT_DOUBLE_EQ(reader.camera().fy, 31);
+  for (int i = 0; i < 3; ++i) {
+    const std::optional<Frame> frame = reader.Next();
+    ASSERT_TRUE(frame.has_value());
+    EXPECT_EQ(frame->index, i);
+    EXPECT_DOUBLE_EQ(frame->timestamp, i + 0.5);
+    EXPECT_EQ(frame->stem, "d" + std::to_string(i));
+    EXPECT_FLOAT_EQ(frame->depth.at<float>(5, 7), i + 1.0f);
+    EXPECT_EQ(frame->color.at<cv::Vec3b>(5, 7), cv::Vec3b(10, 20, 30 + i));
+  }
+  EXPECT_FALSE(reader.Next().has_value());
+}
+
+TEST_F(TumReaderTest, ReadsAPartUnderItsOwnIndices) {
+  TumReaderOptions options;
+  options.first_frame = 1;
+  options.max_frames = 1;
+  TumReader reader(folder_ / "", options);
+  EXPECT_EQ(reader.size(), 1);
+  EXPECT_EQ(reader.Next()->index, 1);
+  EXPECT_FALSE(reader.Next().has_value());
+}
+
+TEST_F(TumReaderTest, OptionsReplaceTheCalibrationFile) {
+  TumReaderOptions options;
+  options.depth_scale = 500;
+  EXPECT_FLOAT_EQ(TumReader(folder_ / "", options).Next()->depth.at<float>(0),
+                  2.0f);
+  options.camera = PinholeCamera{32, 24, 40, 40, 15, 11};
+  std::filesystem::remove(folder_ / "calibration.txt");
+  EXPECT_DOUBLE_EQ(TumReader(folder_ / "", options).camera().fx, 40);
+  ExpectInputError([&] { TumReader reader(folder_ / ""); },
+                   "neither calibration.txt nor camera.txt");
+}
+
+TEST_F(TumReaderTest, NamesMissingAndBrokenImages) {
+  std::filesystem::resize_file(DepthPath(0), 60);
+  ExpectRefused("d0.png: 60 bytes that are no image or a truncated one");
+  std::filesystem::resize_file(DepthPath(0), 0);
+  ExpectRefused("d0.png: 0 bytes");
+  std::filesystem::remove(DepthPath(0));
+  ExpectRefused("d0.png: cannot be opened");
+}
+
+TEST_F(TumReaderTest, NamesWrongSizesAndTypes) {
+  WriteDepth(0, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1000)));
+  ExpectRefused("d0.png: image of 16x12: expected 32x24");
+  WriteDepth(0, cv::Mat(24, 32, CV_8UC1, cv::Scalar(100)));
+  ExpectRefused("d0.png: image of 8 bit, 1 channel(s): expected a depth image");
+  cv::imwrite(folder_ / "rgb/c0.png", cv::Mat(30, 32, CV_8UC3));
+  ExpectRefused("c0.png: image of 32x30");
+}
+
+TEST_F(TumReaderTest, RefusesTruncatedJpeg) {
+  const std::string path = folder_ / "rgb/c0.jpg";
+  cv::Mat noise(24, 32, CV_8UC3);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 255);
+  cv::imwrite(path, noise);
+  folder_.Write("associations.txt", "0 rgb/c0.jpg 0 depth/d0.png\n");
+  EXPECT_TRUE(TumReader(folder_ / "").Next().has_value());
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  ExpectRefused("c0.jpg");
+}
+
+TEST_F(TumReaderTest, NamesBadOptions) {
+  TumReaderOptions options;
+  options.first_frame = 3;
+  ExpectInputError([&] { TumReader reader(folder_ / "", options); },
+                   "first_frame = 3: expected less than the 3 frames");
+  options = {};
+  options.max_frames = -1;
+  ExpectInputError([&] { TumReader reader(folder_ / "", options); },
+                   "max_frames = -1");
+}
+
+TEST(TumReader, ReadsSharedSequences) {
+  for (const char* name : {"walking_xyz", "snoopy", "tum_fr1_rpy"}) {
+    const std::string path = SharedData(name);
+    SKIP_WITHOUT_SHARED_DATA(path, name);
+    TumReader reader(path);
+    EXPECT_GE(reader.size(), 60);
+    const std::optional<Frame> frame = reader.Next();
+    EXPECT_EQ(frame->depth.size(), cv::Size(640, 480));
+    EXPECT_GT(cv::countNonZero(frame->depth), 640 * 480 / 2) << name;
+    double largest = 0;
+    cv::minMaxLoc(frame->depth, nullptr, &largest);
+    EXPECT_LE(largest, 5.0);
+    EXPECT_GT(largest, 1.0);
+  }
+}
+
+}  // namespace
+}  // namespace splitfusion

@@ -1,0 +1,133 @@
+#include "splitfusion/lib/split/segment.h"
+
+#include <gtest/gtest.h>
+
+#include "split/layered_scene.h"
+#include "splitfusion/lib/split/uncertain_region.h"
+#include "support/expect_input_error.h"
+
+namespace splitfusion {
+namespace {
+
+/// A segment that claims `rect`, with the same evidence everywhere.
+Segment Claim(int surface, const cv::Rect& rect, float evidence) {
+  Segment segment;
+  segment.surface = surface;
+  segment.mask = RectMask(rect);
+  segment.evidence.crop = rect;
+  segment.evidence.evidence = cv::Mat_<float>(rect.size(), evidence);
+  segment.foreground = cv::Mat_<uchar>(rect.size(), uchar(255));
+  return segment;
+}
+
+const LabelImage kNothing(120, 160, std::uint16_t(0));
+const cv::Mat kDepth(120, 160, CV_32FC1, cv::Scalar(2));
+
+TEST(ComposeSegments, TheStrongerClaimWins) {
+  const LabelImage labels = ComposeSegments(
+      {Claim(5, {10, 10, 40, 40}, 0.2f), Claim(7, {30, 10, 40, 40}, 0.6f)},
+      kNothing, kDepth);
+  EXPECT_EQ(labels(20, 20), 1);
+  EXPECT_EQ(labels(20, 40), 2);
+  EXPECT_EQ(labels(20, 60), 2);
+  EXPECT_EQ(labels(80, 20), 0);
+}
+
+TEST(ComposeSegments, DropsSpecks) {
+  Segment segment = Claim(1, {10, 10, 60, 40}, 0.2f);
+  segment.foreground.colRange(40, 55) = 0;
+  const cv::Rect speck(55, 5, 5, 5);  // Of the crop.
+  segment.foreground.colRange(55, 60) = 0;
+  segment.foreground(speck) = 255;
+  const LabelImage labels = ComposeSegments({segment}, kNothing, kDepth);
+  EXPECT_EQ(labels(17, 67), 0);
+  EXPECT_EQ(cv::countNonZero(labels), 40 * 40);
+}
+
+TEST(ComposeSegments, PixelsWithoutDepthTakeTheMaskClosed) {
+  Segment segment = Claim(1, {10, 10, 60, 40}, 0.2f);
+  cv::Mat depth = kDepth.clone();
+  const cv::Rect shadow(30, 20, 10, 10);
+  depth(shadow) = 0.0;
+  segment.foreground(shadow - segment.evidence.crop.tl()) = 0;
+  segment.mask(cv::Rect(34, 24, 3, 3)) = 0;  // A small hole of the mask.
+  LabelImage labels = ComposeSegments({segment}, kNothing, depth);
+  EXPECT_EQ(cv::countNonZero(labels), 60 * 40);
+  // A large hole of the mask stays open.
+  segment.mask(cv::Rect(15, 15, 50, 30)) = 0;
+  segment.foreground(cv::Rect(5, 5, 50, 30)) = 0;
+  labels = ComposeSegments({segment}, kNothing, depth);
+  EXPECT_EQ(labels(25, 35), 0);
+}
+
+TEST(ComposeSegments, WithoutDetectionTheProjectionFillsHoles) {
+  Segment segment = Claim(3, {10, 10, 60, 40}, 0.2f);
+  segment.mask.release();
+  cv::Mat depth = kDepth.clone();
+  const cv::Rect shadow(30, 20, 20, 20);
+  depth(shadow) = 0.0;
+  segment.foreground(shadow - segment.evidence.crop.tl()) = 0;
+  EXPECT_EQ(ComposeSegments({segment}, kNothing, depth)(30, 40), 0);
+  LabelImage predicted = kNothing.clone();
+  predicted(segment.evidence.crop) = 3;
+  EXPECT_EQ(ComposeSegments({segment}, predicted, depth)(30, 40), 1);
+}
+
+class UncertainRegionTest : public testing::Test {
+ protected:
+  UncertainRegionTest()
+      : input_{kNothing.clone(),
+               RectMask({}),
+               RectMask({}),
+               kNothing.clone(),
+               cv::Mat_<uchar>(120, 160, uchar(Agreement::kUnknown)),
+               kDepth.clone()} {
+    input_.labels(cv::Rect(60, 40, 40, 40)) = 1;
+  }
+  bool At(int u, int v) const {
+    return DrawUncertainRegion(input_, {5, 10, 30})(v, u) > 0;
+  }
+  UncertainInput input_;
+};
+
+TEST_F(UncertainRegionTest, IsABandAroundSurfacesOnTheBackgroundOnly) {
+  EXPECT_FALSE(At(80, 60));
+  EXPECT_TRUE(At(57, 60));
+  EXPECT_FALSE(At(50, 60));
+}
+
+TEST_F(UncertainRegionTest, IsWiderAtDepthEdges) {
+  input_.depth(cv::Rect(0, 0, 52, 120)) = 3.0;
+  EXPECT_TRUE(At(52, 60));
+  EXPECT_FALSE(At(48, 60));
+}
+
+TEST_F(UncertainRegionTest, CoversUnconfirmedDetections) {
+  input_.unconfirmed = RectMask({10, 10, 20, 20});
+  EXPECT_TRUE(At(20, 20));
+  EXPECT_TRUE(At(32, 20));
+  EXPECT_FALSE(At(45, 20));
+}
+
+TEST_F(UncertainRegionTest, CoversWhatADetectorGaveToASurface) {
+  input_.detected = RectMask({40, 40, 60, 40});
+  EXPECT_TRUE(At(45, 60));
+  // Unless it is where the background is known to be.
+  input_.agreement.setTo(static_cast<int>(Agreement::kSame));
+  EXPECT_FALSE(At(45, 60));
+}
+
+TEST_F(UncertainRegionTest, CoversWhatStandsBeforeTheBackgroundNearby) {
+  input_.agreement.setTo(static_cast<int>(Agreement::kNearer));
+  EXPECT_TRUE(At(40, 60));
+  EXPECT_FALSE(At(20, 60));
+}
+
+TEST(UncertainOptions, NamesFieldAndBound) {
+  UncertainOptions options;
+  options.band = -1;
+  ExpectInputError([&] { options.Check(); }, "band = -1: expected 0..100");
+}
+
+}  // namespace
+}  // namespace splitfusion

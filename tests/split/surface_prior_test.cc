@@ -1,0 +1,111 @@
+#include "splitfusion/lib/split/surface_prior.h"
+
+#include <gtest/gtest.h>
+
+#include "split/layered_scene.h"
+#include "support/expect_input_error.h"
+
+namespace splitfusion {
+namespace {
+
+Agreement At(const cv::Mat_<uchar>& agreement, int u) {
+  return static_cast<Agreement>(agreement(0, u));
+}
+
+TEST(CompareDepth, TellsNearerFartherAndTheSame) {
+  const cv::Mat live = (cv::Mat_<float>(1, 6) << 0, 1, 1.02, 1.5, 0.5, 1.06);
+  SurfacePrediction prediction;
+  prediction.depth = (cv::Mat_<float>(1, 6) << 1, 0, 1, 1, 1, 1);
+  prediction.labels = LabelImage(1, 6, std::uint16_t(0));
+  cv::Mat_<uchar> agreement = CompareDepth(live, prediction, {});
+  EXPECT_EQ(At(agreement, 0), Agreement::kUnknown);
+  EXPECT_EQ(At(agreement, 1), Agreement::kUnknown);
+  EXPECT_EQ(At(agreement, 2), Agreement::kSame);
+  EXPECT_EQ(At(agreement, 3), Agreement::kFarther);
+  EXPECT_EQ(At(agreement, 4), Agreement::kNearer);
+  // The background does not move: its gate is narrower than a surface's.
+  EXPECT_EQ(At(agreement, 5), Agreement::kFarther);
+  prediction.labels.setTo(1);
+  agreement = CompareDepth(live, prediction, {});
+  EXPECT_EQ(At(agreement, 5), Agreement::kSame);
+}
+
+class GatherEvidenceTest : public testing::Test {
+ protected:
+  GatherEvidenceTest()
+      : labels_(120, 160, std::uint16_t(0)),
+        agreement_(120, 160, uchar(Agreement::kUnknown)) {}
+
+  /// Evidence at a pixel; the surface's id is 1.
+  float At(const cv::Point& pixel, const cv::Mat_<uchar>& mask,
+           const cv::Mat_<float>& support = {}) const {
+    const SurfaceEvidence evidence =
+        GatherEvidence({1, mask, {}, support}, labels_, agreement_,
+                       SceneOptions().graph_cut, PriorOptions());
+    if (!evidence.crop.contains(pixel)) return kSurelyBackground;
+    return evidence.evidence(pixel - evidence.crop.tl());
+  }
+  void Predict(const cv::Rect& rect, int label, Agreement agreement) {
+    labels_(rect) = static_cast<std::uint16_t>(label);
+    agreement_(rect) = static_cast<uchar>(agreement);
+  }
+
+  LabelImage labels_;
+  cv::Mat_<uchar> agreement_;
+  const cv::Mat_<uchar> mask_ = RectMask({40, 40, 40, 40});
+  const cv::Mat_<uchar> missed_;
+};
+
+TEST_F(GatherEvidenceTest, FollowsTheDistanceToTheMasksBorder) {
+  EXPECT_GT(At({60, 60}, mask_), At({41, 60}, mask_));
+  EXPECT_GT(At({41, 60}, mask_), 0);
+  EXPECT_LT(At({37, 60}, mask_), 0);
+  EXPECT_EQ(At({25, 60}, mask_), kSurelyBackground);
+}
+
+TEST_F(GatherEvidenceTest, ThePredictionKeepsWhatADetectionForgot) {
+  const cv::Rect leg(50, 80, 10, 30);
+  EXPECT_EQ(At({55, 105}, mask_), kSurelyBackground);
+  Predict(leg, 1, Agreement::kSame);
+  EXPECT_GT(At({55, 105}, mask_), 0);
+  // ... but not what hardly any detection ever covered.
+  EXPECT_LT(At({55, 105}, mask_, cv::Mat_<float>(120, 160, 0.1f)), 0);
+}
+
+TEST_F(GatherEvidenceTest, AMissedSurfaceIsWhereTheDepthAgrees) {
+  Predict({40, 40, 40, 40}, 1, Agreement::kSame);
+  EXPECT_GT(At({60, 60}, missed_), 0);
+  Predict({40, 40, 20, 40}, 1, Agreement::kFarther);
+  EXPECT_LT(At({50, 60}, missed_), 0);
+  EXPECT_GT(At({70, 60}, missed_), 0);
+}
+
+TEST_F(GatherEvidenceTest, BackgroundAndOthersSpeakAgainst) {
+  const float neutral = At({60, 60}, mask_);
+  Predict({40, 40, 40, 40}, 0, Agreement::kSame);
+  EXPECT_LT(At({60, 60}, mask_), neutral);
+  Predict({40, 40, 40, 40}, 0, Agreement::kNearer);
+  EXPECT_GT(At({60, 60}, mask_), neutral);
+  Predict({40, 40, 40, 40}, 2, Agreement::kSame);
+  EXPECT_LT(At({60, 60}, mask_), 0);
+}
+
+TEST_F(GatherEvidenceTest, NothingSeenMakesAnEmptyCrop) {
+  const SurfaceEvidence evidence =
+      GatherEvidence({1, missed_, {}, {}}, labels_, agreement_,
+                     GraphCutOptions(), PriorOptions());
+  EXPECT_EQ(evidence.crop.area(), 0);
+}
+
+TEST(PriorOptions, NamesFieldAndBound) {
+  PriorOptions options;
+  options.mask_weight = 0;
+  ExpectInputError([&] { options.Check(); }, "mask_weight = 0");
+  options = {};
+  options.surface_gate = -1;
+  ExpectInputError([&] { options.Check(); },
+                   "surface_gate = -1: expected positive metres");
+}
+
+}  // namespace
+}  // namespace splitfusion
