@@ -49,6 +49,32 @@ void ForEachPixel(const MeshRendering& rendering, const Surface& surface,
 
 Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
+/// Grey values of a rendered model, unsmoothed and smoothed like the coarse
+/// level of the live image; pixels outside of the model do not count.
+struct ModelGrey {
+  cv::Mat_<float> fine;
+  cv::Mat_<float> coarse;
+};
+
+ModelGrey SmoothGrey(const cv::Mat_<cv::Vec3b>& color, const cv::Mat& mask,
+                     int stride) {
+  ModelGrey grey;
+  grey.fine.create(color.size());
+  for (int v = 0; v < color.rows; ++v) {
+    for (int u = 0; u < color.cols; ++u) {
+      grey.fine(v, u) =
+          mask.at<std::uint8_t>(v, u) != 0 ? Intensity(color(v, u)) : 0.0f;
+    }
+  }
+  const double sigma = kGreySigma[1] / stride;
+  cv::Mat_<float> inside;
+  mask.convertTo(inside, CV_32F, 1.0 / 255);
+  cv::GaussianBlur(inside, inside, cv::Size(), sigma);
+  cv::GaussianBlur(grey.fine, grey.coarse, cv::Size(), sigma);
+  grey.coarse /= cv::max(inside, 1e-3f);
+  return grey;
+}
+
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
@@ -97,6 +123,16 @@ SurfacePrediction ToPrediction(const MeshRendering& rendering,
 std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
                                         const Surface& surface, int stride) {
   std::vector<ModelSample> samples;
+  cv::Mat_<cv::Vec3b> color(rendering.camera.height, rendering.camera.width);
+  cv::Mat_<std::uint8_t> mask(color.size(), std::uint8_t{0});
+  ForEachPixel(rendering, surface,
+               [&](int v, int u, const Eigen::Vector3i& triangle,
+                   const cv::Vec3f& weights) {
+                 color(v, u) =
+                     InterpolatedColor(surface.mesh(), triangle, weights);
+                 mask(v, u) = 255;
+               });
+  const ModelGrey grey = SmoothGrey(color, mask, stride);
   ForEachPixel(rendering, surface,
                [&](int v, int u, const Eigen::Vector3i& triangle,
                    const cv::Vec3f& weights) {
@@ -106,8 +142,7 @@ std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
                  sample.point = Interpolated(surface.mesh().vertices, triangle,
                                              weights);
                  sample.normal = ToEigen(normal);
-                 sample.intensity = Intensity(
-                     InterpolatedColor(surface.mesh(), triangle, weights));
+                 sample.intensity = {grey.fine(v, u), grey.coarse(v, u)};
                  sample.u = u * stride;
                  sample.v = v * stride;
                  samples.push_back(sample);
@@ -137,6 +172,7 @@ std::vector<ModelSample> RayCastSamples(const Surface& background,
   cv::Mat_<float> depth;
   cv::extractChannel(cast.points, depth, 2);
   const PointMap map = ComputePointMap(depth, camera.Subsampled(stride));
+  const ModelGrey grey = SmoothGrey(cast.color, depth > 0, stride);
   std::vector<ModelSample> samples;
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 0; u < depth.cols; ++u) {
@@ -145,7 +181,7 @@ std::vector<ModelSample> RayCastSamples(const Surface& background,
       ModelSample sample;
       sample.point = canonical_from_camera * ToEigen(map.points(v, u));
       sample.normal = canonical_from_camera.linear() * ToEigen(normal);
-      sample.intensity = Intensity(cast.color(v, u));
+      sample.intensity = {grey.fine(v, u), grey.coarse(v, u)};
       sample.u = u * stride;
       sample.v = v * stride;
       sample.skinning.count = 1;

@@ -96,11 +96,12 @@ TrackerOptions TrackerOptions::Defaults() {
   TrackerOptions options;
   const double wide = 30 * M_PI / 180;
   const double tight = 20 * M_PI / 180;
-  options.rigid = {{8, 5, {0.10, wide, 1.31}},
-                   {4, 4, {0.07, 0.5 * (wide + tight), 1.31}},
-                   {2, 4, {0.05, tight, 1.31}}};
+  options.rigid = {{8, 5, {0.10, wide, 1.31, true}},
+                   {4, 4, {0.07, 0.5 * (wide + tight), 1.31, false}},
+                   {2, 4, {0.05, tight, 1.31, false}}};
   const double loose = 45 * M_PI / 180;
-  options.non_rigid = {{4, 3, {0.10, loose, 1.31}}, {4, 5, {0.05, loose, 1.31}}};
+  options.non_rigid = {{4, 3, {0.10, loose, 1.31, true}},
+                       {4, 5, {0.05, loose, 1.31, false}}};
   return options;
 }
 

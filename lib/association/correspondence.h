@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_ASSOCIATION_CORRESPONDENCE_H_
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "splitfusion/lib/deformation/skinning.h"
@@ -12,7 +13,8 @@ namespace splitfusion {
 struct ModelSample {
   Eigen::Vector3f point;   ///< Canonical, metres.
   Eigen::Vector3f normal;  ///< Canonical, unit length, outward.
-  float intensity = 0;     ///< Grey value of the model's colour, 0..1.
+  /// Grey value of the model's colour, 0..1: fine and coarse, see LiveView.
+  std::array<float, 2> intensity{};
   int u = 0;               ///< Column of the full image it was rendered at.
   int v = 0;               ///< Row of the full image it was rendered at.
   Skinning skinning;       ///< Nodes that carry it.

@@ -44,17 +44,18 @@ cv::Mat_<float> WithoutPinholes(const cv::Mat_<float>& depth,
   return filled;
 }
 
-/// Smoothed grey values and their derivatives.
-void ComputeIntensity(const cv::Mat& color, LiveView* view) {
+GreyLevel MakeGreyLevel(const cv::Mat& color, double sigma) {
+  GreyLevel level;
   cv::Mat grey;
   cv::cvtColor(color, grey, cv::COLOR_BGR2GRAY);
-  grey.convertTo(view->intensity, CV_32F, 1.0 / 255);
-  cv::GaussianBlur(view->intensity, view->intensity, cv::Size(), 1.2);
+  grey.convertTo(level.value, CV_32F, 1.0 / 255);
+  cv::GaussianBlur(level.value, level.value, cv::Size(), sigma);
   cv::Mat by_u, by_v;
   constexpr double kSobelScale = 1.0 / 8;
-  cv::Sobel(view->intensity, by_u, CV_32F, 1, 0, 3, kSobelScale);
-  cv::Sobel(view->intensity, by_v, CV_32F, 0, 1, 3, kSobelScale);
-  cv::merge(std::vector<cv::Mat>{by_u, by_v}, view->intensity_gradient);
+  cv::Sobel(level.value, by_u, CV_32F, 1, 0, 3, kSobelScale);
+  cv::Sobel(level.value, by_v, CV_32F, 0, 1, 3, kSobelScale);
+  cv::merge(std::vector<cv::Mat>{by_u, by_v}, level.gradient);
+  return level;
 }
 
 /// 255 where a pixel lies next to a jump of depth (either side of it).
@@ -107,7 +108,7 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
   view.depth = WithoutPinholes(depth, focal_length);
   view.map = ComputePointMap(view.depth, camera);
   view.color = color;
-  ComputeIntensity(color, &view);
+  for (int k = 0; k < 2; ++k) view.grey[k] = MakeGreyLevel(color, kGreySigma[k]);
   view.edges = DepthEdges(view.depth, focal_length);
   view.labels.create(depth.size());
   view.labels.setTo(0);

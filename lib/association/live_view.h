@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_ASSOCIATION_LIVE_VIEW_H_
 #define SPLITFUSION_LIB_ASSOCIATION_LIVE_VIEW_H_
 
+#include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
 
@@ -9,13 +10,22 @@
 
 namespace splitfusion {
 
+/// Smoothed grey values of an image and their derivatives, HxW.
+struct GreyLevel {
+  cv::Mat_<float> value;         ///< 0..1.
+  cv::Mat_<cv::Vec2f> gradient;  ///< By column and row, 1 / pixel.
+};
+
+/// Smoothing of the fine and the coarse level, pixels: the coarse one reaches
+/// as far as things move between frames.
+constexpr double kGreySigma[2] = {1.2, 4.0};
+
 /// The live frame as association and fusion see it; all images HxW.
 struct LiveView {
   PinholeCamera camera;
   PointMap map;                   ///< Points and normals, camera frame.
   cv::Mat color;                  ///< 8UC3, BGR.
-  cv::Mat_<float> intensity;      ///< Smoothed grey value, 0..1.
-  cv::Mat_<cv::Vec2f> intensity_gradient;  ///< By column and row, 1 / pixel.
+  std::array<GreyLevel, 2> grey;  ///< Fine and coarse.
   cv::Mat_<float> depth;          ///< Metres, 0 = none; pinholes filled.
   cv::Mat_<float> confidence;     ///< (sigma_0 / sigma(z))^2 at most 1, times
                                   ///< the cosine of the viewing angle.

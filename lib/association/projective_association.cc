@@ -36,7 +36,8 @@ class Associator {
         surface_(surface),
         distance_(static_cast<float>(gates.distance)),
         min_normal_cosine_(static_cast<float>(std::cos(gates.normal_angle))),
-        min_view_cosine_(static_cast<float>(std::cos(gates.grazing_angle))) {}
+        min_view_cosine_(static_cast<float>(std::cos(gates.grazing_angle))),
+        color_level_(gates.coarse_color ? 1 : 0) {}
 
   Outcome Match(const ModelSample& sample, Correspondence* out) const {
     const Eigen::Vector3f point =
@@ -73,15 +74,16 @@ class Associator {
     }
     out->model = sample;
     out->pixel = pixel;
-    const cv::Vec2f& gradient = live_.intensity_gradient(v, u);
+    const GreyLevel& grey = live_.grey[color_level_];
+    const cv::Vec2f& gradient = grey.gradient(v, u);
     out->intensity_gradient = Eigen::Vector2f(gradient[0], gradient[1]);
     // First-order to the place between the pixels.
     const float live_intensity =
-        live_.intensity(v, u) +
+        grey.value(v, u) +
         out->intensity_gradient.dot(
             pixel - Eigen::Vector2f(static_cast<float>(u),
                                     static_cast<float>(v)));
-    out->intensity_difference = live_intensity - sample.intensity;
+    out->intensity_difference = live_intensity - sample.intensity[color_level_];
     out->weight = DepthConfidence(out->target.z());
     return Outcome::kAccepted;
   }
@@ -91,6 +93,7 @@ class Associator {
   const LiveView& live_;
   std::uint16_t surface_;
   float distance_, min_normal_cosine_, min_view_cosine_;
+  int color_level_;
 };
 
 /// Takes the median difference of grey values, a change of exposure, out.

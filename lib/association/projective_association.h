@@ -15,6 +15,7 @@ struct AssociationGates {
   double distance = 0.10;       ///< Metres; grows with the depth noise.
   double normal_angle = 0.52;   ///< Radians between the normals.
   double grazing_angle = 1.31;  ///< Radians between live normal and view ray.
+  bool coarse_color = false;    ///< Compare colours at the coarse level.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;

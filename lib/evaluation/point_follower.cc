@@ -61,7 +61,9 @@ class Follower {
   }
 
   /// Attaches what is not attached yet to the surfaces that are there in
-  /// `frame`, if `only_newborn` to those that were not there before.
+  /// `frame`, if `only_newborn` to those that were not there before. Those also
+  /// take over points of the background that lie on them: they were not yet
+  /// told apart from it.
   bool Attach(const RecordedFrame& frame, bool only_newborn) {
     std::vector<const AnimatedSurface*> present;
     for (const AnimatedSurface& surface : surfaces_) {
@@ -74,9 +76,17 @@ class Follower {
     const FrameMask mask(run_, frame);
     const SurfaceAttacher attacher(present, frame.index, options_);
     for (FollowedPoint& point : points_) {
-      if (point.attachment) continue;
-      point.attachment =
+      const bool held =
+          point.attachment && point.attachment->surface->recorded().id != 0;
+      if (held || (point.attachment && !only_newborn)) continue;
+      const std::optional<Attachment> found =
           attacher.Attach(point.position, mask.IdAt(point.position));
+      if (!found) continue;
+      if (point.attachment &&
+          found->offset.norm() > options_.foreground_distance) {
+        continue;
+      }
+      point.attachment = found;
     }
     return mask.known();
   }
