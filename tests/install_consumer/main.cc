@@ -44,20 +44,24 @@ class PointToPointTerm : public splitfusion::EnergyTerm {
   }
 };
 
-/// Depth of a square of 2 m at z = 2 m that faces the camera, in its middle.
-float RenderSquare() {
-  splitfusion::TriangleMesh mesh;
-  mesh.vertices = {{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}};
-  mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
+splitfusion::PinholeCamera Camera() {
   splitfusion::PinholeCamera camera;
   camera.width = 32;
   camera.height = 24;
   camera.fx = camera.fy = 30;
   camera.cx = 15.5;
   camera.cy = 11.5;
+  return camera;
+}
+
+/// Depth of a square of 2 m at z = 2 m that faces the camera, in its middle.
+float RenderSquare() {
+  splitfusion::TriangleMesh mesh;
+  mesh.vertices = {{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}};
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
   splitfusion::Raster raster;
-  raster.Clear(camera);
-  splitfusion::RasterizeTriangles(mesh.vertices, mesh.triangles, camera,
+  raster.Clear(Camera());
+  splitfusion::RasterizeTriangles(mesh.vertices, mesh.triangles, Camera(),
                                   /*cull_back_faces=*/true,
                                   /*first_triangle_id=*/0, &raster);
   return raster.depth(12, 16);
@@ -92,7 +96,8 @@ double MotionError() {
       splitfusion::MakeRigidGraph(splitfusion::Rigid3d::Identity());
   splitfusion::SolverOptions options;
   options.max_iterations = 20;
-  splitfusion::MinimizeWithCeres({energy, MovedBox(motion)}, options, &graph);
+  splitfusion::MinimizeWithCeres({energy, MovedBox(motion), Camera()}, options,
+                                 &graph);
   const splitfusion::Rigid3d found = splitfusion::MeanRigidMotion(graph);
   return (found.matrix() - motion.matrix()).norm();
 }
