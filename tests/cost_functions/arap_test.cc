@@ -102,7 +102,7 @@ TEST(ArapTerm, SumsOverAllDirectedEdges) {
   Shake(0.01, /*seed=*/6, &graph);
   const TermOptions options{"arap", /*weight=*/3, LossKind::kTrivial, 0.01};
   ResidualSink sink(graph, options, 1);
-  ArapTerm().AddResiduals({graph, {}}, &sink);
+  ArapTerm().AddResiduals({graph, {}, PinholeCamera()}, &sink);
   int edges = 0;
   double sum = 0;
   for (int i = 0; i < graph.size(); ++i) {
@@ -128,7 +128,7 @@ TEST(ArapTerm, IsAbsentOnARigidSurface) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   const TermOptions options;
   ResidualSink sink(graph, options, 1);
-  ArapTerm().AddResiduals({graph, {}}, &sink);
+  ArapTerm().AddResiduals({graph, {}, PinholeCamera()}, &sink);
   EXPECT_TRUE(sink.blocks().empty());
   EXPECT_EQ(sink.residual_vectors(), 0);
 }

@@ -132,7 +132,8 @@ TEST(PointToPlaneTerm, AddsOneResidualACorrespondenceWithItsConfidence) {
   for (Correspondence& c : correspondences) c.weight = 0.25;
   const TermOptions options{"point_to_plane", 1, LossKind::kTrivial, 0.01};
   ResidualSink sink(graph, options, 1);
-  PointToPlaneTerm().AddResiduals({graph, correspondences}, &sink);
+  PointToPlaneTerm().AddResiduals({graph, correspondences, PinholeCamera()},
+                                  &sink);
   EXPECT_EQ(sink.residual_vectors(), static_cast<int>(correspondences.size()));
   double cost = 0;
   for (const ResidualBlock& block : sink.blocks()) {

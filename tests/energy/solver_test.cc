@@ -36,7 +36,8 @@ SolverReport Fit(const TriangleMesh& mesh, const Map& truth,
   SolverReport report;
   for (int round = 0; round < 8; ++round) {
     const auto correspondences = PerfectAssociation(mesh, *graph, truth);
-    report = MinimizeWithCeres({energy, correspondences}, options, graph);
+    report = MinimizeWithCeres({energy, correspondences, PinholeCamera()},
+                               options, graph);
   }
   return report;
 }
@@ -120,7 +121,8 @@ TEST_P(EverySolver, FindsTheSameMinimum) {
       ParsedEnergy("point_to_plane(loss=huber) arap(weight=3)");
   DeformationGraph reference = start;
   const double cost =
-      MinimizeWithCeres({energy, correspondences}, Thorough(), &reference)
+      MinimizeWithCeres({energy, correspondences, PinholeCamera()}, Thorough(),
+                        &reference)
           .final_cost;
   SolverOptions options = Thorough();
   std::tie(options.linear_solver, options.preconditioner,
@@ -129,8 +131,8 @@ TEST_P(EverySolver, FindsTheSameMinimum) {
   options.max_linear_solver_iterations = 1000;
   options.Check();
   DeformationGraph graph = start;
-  const SolverReport report =
-      MinimizeWithCeres({energy, correspondences}, options, &graph);
+  const SolverReport report = MinimizeWithCeres(
+      {energy, correspondences, PinholeCamera()}, options, &graph);
   EXPECT_TRUE(report.usable);
   EXPECT_NEAR(report.final_cost, cost, 1e-6 * cost);
   for (int i = 0; i < graph.size(); ++i) {
@@ -169,8 +171,9 @@ class BentPlateProblem : public ::testing::Test {
 
   SolverReport Minimize(const SolverOptions& options, DeformationGraph* graph,
                         double prior_factor = 1) const {
-    return MinimizeWithCeres({energy_, correspondences_, prior_factor}, options,
-                             graph);
+    return MinimizeWithCeres(
+        {energy_, correspondences_, PinholeCamera(), prior_factor}, options,
+        graph);
   }
 
   const TriangleMesh mesh_ = PlateMesh(0.2, 0.1, 0.02, 1);
@@ -270,7 +273,7 @@ TEST(Solver, AnEmptyProblemChangesNothing) {
   DeformationGraph graph = MakeRigidGraph(MakeMotion({0.1, 0, 0}, {0, 0, 1}));
   const DeformationGraph before = graph;
   const SolverReport report =
-      MinimizeWithCeres({energy, {}}, SolverOptions(), &graph);
+      MinimizeWithCeres({energy, {}, PinholeCamera()}, SolverOptions(), &graph);
   EXPECT_EQ(report.final_cost, 0);
   EXPECT_LT((graph.motions[0].rotation - before.motions[0].rotation).norm(),
             1e-12);

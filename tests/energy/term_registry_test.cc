@@ -42,7 +42,7 @@ TEST(ParseEnergy, LeavesOutWhatHasADefault) {
 }
 
 TEST(ParseEnergy, UnknownTermsListTheKnownOnes) {
-  const std::string known = " is unknown: expected arap, point_to_plane";
+  const std::string known = " is unknown: expected arap, color, point_to_plane";
   ExpectRefused("arapp(weight=1)", "--terms: term 'arapp'" + known);
   ExpectRefused("arap, point_to_plane", "term ''" + known);
   ExpectRefused("arap)", "term ''" + known);
@@ -51,7 +51,7 @@ TEST(ParseEnergy, UnknownTermsListTheKnownOnes) {
 
 TEST(ParseEnergy, NothingIsNoEnergy) {
   const std::string message =
-      "--terms is empty: expected one or more of arap, point_to_plane";
+      "--terms is empty: expected one or more of arap, color, point_to_plane";
   ExpectRefused("", message);
   ExpectRefused(" \t\n", message);
 }
