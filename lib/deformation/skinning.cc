@@ -19,6 +19,19 @@ std::vector<Eigen::Vector3f> ToFloat(const std::vector<Eigen::Vector3d>& in) {
   return out;
 }
 
+/// Cuts ascending candidates down to the kMaxCandidates nearest to `node`.
+void KeepNearest(const DeformationGraph& graph, int node,
+                 std::vector<int>* candidates) {
+  const auto distance = [&](int i) {
+    return (graph.positions[i] - graph.positions[node]).squaredNorm();
+  };
+  std::stable_sort(
+      candidates->begin(), candidates->end(),
+      [&](int a, int b) { return distance(a) < distance(b); });
+  candidates->resize(kMaxCandidates);
+  std::sort(candidates->begin(), candidates->end());
+}
+
 /// Nodes within two edges of `node`, at least `wanted` of them if the graph
 /// has so many (small islands of the graph borrow from their surroundings).
 std::vector<int> Candidates(const DeformationGraph& graph, const KdTree& tree,
@@ -38,7 +51,7 @@ std::vector<int> Candidates(const DeformationGraph& graph, const KdTree& tree,
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
   }
-  if (found.size() > kMaxCandidates) found.resize(kMaxCandidates);
+  if (found.size() > kMaxCandidates) KeepNearest(graph, node, &found);
   return found;
 }
 

@@ -143,7 +143,8 @@ class Caster {
             return hit;
           }
         }
-        previous = distance > 0 ? distance : -1;
+        // Behind a crossing that could not be refined it is tried again.
+        if (distance > 0) previous = distance;
       }
       // Distances are along the ray to within the slope: half is safe.
       const float free = distance > 0 && weight > 0 ? 0.5f * distance / voxel_ : 0;

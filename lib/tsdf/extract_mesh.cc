@@ -47,7 +47,12 @@ class VertexSampler {
       openvdb::Vec3d low = p, high = p;
       low[axis] -= 0.75;
       high[axis] += 0.75;
-      gradient[axis] = distance_.isSample(high) - distance_.isSample(low);
+      // At the border of what was observed, not beyond the vertex's own cell.
+      if (!Observed(low)) low[axis] = std::floor(p[axis]);
+      if (!Observed(high)) high[axis] = std::floor(p[axis]) + 1;
+      const double length = high[axis] - low[axis];
+      gradient[axis] = static_cast<float>(
+          (distance_.isSample(high) - distance_.isSample(low)) / length);
     }
     const float length = gradient.norm();
     return length > 0 ? Eigen::Vector3f(gradient / length)

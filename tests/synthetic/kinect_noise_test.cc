@@ -6,7 +6,7 @@
 
 #include "splitfusion/lib/geometry/point_map.h"
 #include "splitfusion/lib/synthetic/synthetic_options.h"
-#include "synthetic/expect_input_error.h"
+#include "support/expect_input_error.h"
 
 namespace splitfusion {
 namespace {

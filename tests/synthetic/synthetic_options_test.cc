@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "synthetic/expect_input_error.h"
+#include "support/expect_input_error.h"
 
 namespace splitfusion {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "synthetic/expect_input_error.h"
+#include "support/expect_input_error.h"
 
 namespace splitfusion {
 namespace {

@@ -13,7 +13,7 @@
 #include "splitfusion/lib/sequence/tum_reader.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
 #include "support/temporary_folder.h"
-#include "synthetic/expect_input_error.h"
+#include "support/expect_input_error.h"
 
 namespace splitfusion {
 namespace {

@@ -1,0 +1,99 @@
+#include "splitfusion/cost_functions/color_constancy.h"
+
+#include <gtest/gtest.h>
+
+#include "splitfusion/lib/energy/warp_functor.h"
+#include "support/gradient_check.h"
+#include "support/sample_depth.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr double kUnit = ColorConstancy::kMetresPerIntensity;
+
+ColorConstancy Sample() {
+  ColorConstancy color{};
+  color.fx = 130, color.fy = 131, color.cx = 80, color.cy = 60;
+  color.pixel = {100, 40};
+  color.gradient = {0.02, -0.01};
+  color.difference = 0.1;
+  color.sqrt_confidence = 0.5;
+  return color;
+}
+
+double Value(const ColorConstancy& color, const Eigen::Vector3d& x) {
+  double residual = 0;
+  color(x.data(), &residual);
+  return residual;
+}
+
+/// Point at z-depth `z` that is seen at a pixel.
+Eigen::Vector3d PointAt(double u, double v, double z) {
+  return {(u - 80) / 130 * z, (v - 60) / 131 * z, z};
+}
+
+TEST(ColorConstancy, ValueByHand) {
+  EXPECT_NEAR(Value(Sample(), PointAt(100, 40, 1.3)), kUnit * 0.5 * 0.1, 1e-12);
+  // Three pixels to the right, two down: 0.1 + 0.06 - 0.02.
+  EXPECT_NEAR(Value(Sample(), PointAt(103, 42, 1.3)), kUnit * 0.5 * 0.14,
+              1e-12);
+}
+
+TEST(ColorConstancy, DoesNotChangeAlongTheViewRay) {
+  const double value = Value(Sample(), PointAt(103, 42, 1));
+  for (const double z : {0.5, 2.0, 10.0}) {
+    EXPECT_NEAR(Value(Sample(), PointAt(103, 42, z)), value, 1e-12);
+  }
+}
+
+TEST(ColorConstancy, IsZeroWhereTheBrightnessAgrees) {
+  ColorConstancy color = Sample();
+  color.difference = -0.02;
+  EXPECT_NEAR(Value(color, PointAt(101, 40, 1.7)), 0, 1e-12);
+}
+
+TEST(ColorConstancy, GradientsMatchNumeric) {
+  DeformationGraph graph = CoverWithNodes(PlateMesh(0.2, 0.2, 0.01, 1), 0.04);
+  Shake(0.05, /*seed=*/1, &graph);
+  const Eigen::Vector3f point(0.11f, -0.07f, 1);
+  const Skinning skinning = SkinningIndex(graph, 6).Skin(point);
+  const auto cost = AutoDiffOverTwists(
+      WarpFunctor<ColorConstancy>(graph, skinning, point, Sample()),
+      skinning.count, 1);
+  for (const double size : {0.0, 0.01, 0.3}) {
+    EXPECT_GRADIENTS_MATCH(*cost,
+                           RandomTwists(skinning.count, size, /*seed=*/2));
+  }
+}
+
+TEST(ColorConstancyTerm, TakesTheCorrespondencesAndTheCamera) {
+  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  const PinholeCamera camera = SmallCamera();
+  Correspondence c;
+  c.model.point = camera.BackProject<float>(90, 50, 1.5f);
+  c.model.normal = c.warped_normal = c.target_normal = {0, 0, -1};
+  c.target = c.model.point;
+  c.model.skinning.count = 1;
+  c.model.skinning.weights[0] = 1;
+  c.pixel = {90, 50};
+  c.intensity_difference = 0.2f;
+  c.intensity_gradient = {0.1f, 0};
+  c.weight = 0.25f;
+  const TermOptions options{"color", 1, LossKind::kTrivial, 0.01};
+  ResidualSink sink(graph, options, 1);
+  ColorConstancyTerm().AddResiduals({graph, {c, c}, camera}, &sink);
+  EXPECT_EQ(sink.residual_vectors(), 2);
+  double cost = 0;
+  for (const double r :
+       Residuals(*sink.blocks().at(0).cost, {std::vector<double>(6, 0)})) {
+    cost += r * r / 2;
+  }
+  // 0.2 in grey value count like 1 cm, of which half by the confidence.
+  EXPECT_NEAR(cost, 0.25, 1e-5);
+  EXPECT_FALSE(ColorConstancyTerm().is_prior());
+}
+
+}  // namespace
+}  // namespace splitfusion

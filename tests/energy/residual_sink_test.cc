@@ -1,0 +1,148 @@
+#include "splitfusion/lib/energy/residual_sink.h"
+
+#include <gtest/gtest.h>
+
+#include "support/gradient_check.h"
+
+namespace splitfusion {
+namespace {
+
+/// Depth of the warped point over a plane z = target.
+struct DepthError {
+  static constexpr int kResiduals = 1;
+  double target = 0;
+  template <typename T>
+  bool operator()(const T* x, T* residual) const {
+    residual[0] = x[2] - T(target);
+    return true;
+  }
+};
+
+/// A constant residual vector of one node.
+struct Constant {
+  static constexpr int kResiduals = 2;
+  double x = 0, y = 0;
+  template <typename T>
+  bool operator()(T const* const* twists, T* residual) const {
+    residual[0] = T(x) + T(0) * twists[0][0];
+    residual[1] = T(y);
+    return true;
+  }
+};
+
+/// Energy of the sink's blocks at zero twist, as Ceres adds it up.
+double EnergyOf(ResidualSink* sink) {
+  double energy = 0;
+  for (const ResidualBlock& block : sink->blocks()) {
+    const std::vector<std::vector<double>> twists(block.nodes.size(),
+                                                  std::vector<double>(6, 0));
+    double squared = 0;
+    for (const double r : Residuals(*block.cost, twists)) squared += r * r;
+    double rho[3] = {squared, 1, 0};
+    if (block.loss != nullptr) block.loss->Evaluate(squared, rho);
+    energy += rho[0] / 2;
+  }
+  return energy;
+}
+
+ModelSample SampleAt(float z) {
+  ModelSample sample;
+  sample.point = {0, 0, z};
+  sample.skinning.count = 1;
+  sample.skinning.weights[0] = 1;
+  return sample;
+}
+
+/// Energy of points that are so many metres off the plane z = 1.
+double PointEnergy(const TermOptions& options, double factor,
+                   const std::vector<double>& errors) {
+  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  std::vector<ModelSample> samples;
+  std::vector<DepthError> functors;
+  for (const double error : errors) {
+    samples.push_back(SampleAt(1));
+    functors.push_back({1 - error});
+  }
+  std::vector<const ModelSample*> pointers;
+  for (const ModelSample& sample : samples) pointers.push_back(&sample);
+  ResidualSink sink(graph, options, factor);
+  sink.AddWarpedPoints(pointers, functors);
+  EXPECT_EQ(sink.residual_vectors(), static_cast<int>(errors.size()));
+  return EnergyOf(&sink);
+}
+
+TEST(ResidualSink, EnergyIsWeightTimesTheMeanInSquaredCentimetres) {
+  // weight / N * sum |r|^2 / s^2 = 3 / 2 * (1 + 4).
+  const TermOptions options{"", 3, LossKind::kTrivial, 0.01};
+  EXPECT_NEAR(PointEnergy(options, 1, {0.01, -0.02}), 7.5, 1e-9);
+}
+
+TEST(ResidualSink, LossesSeeCentimetresToo) {
+  // Huber at 1 cm: 1 and 2 * 2 - 1 = 3.
+  const TermOptions huber{"", 1, LossKind::kHuber, 0.01};
+  EXPECT_NEAR(PointEnergy(huber, 1, {0.01, -0.02}), 2, 1e-9);
+  // Tukey at 2 cm is flat beyond: 4 / 3 in cm^2.
+  const TermOptions tukey{"", 1, LossKind::kTukey, 0.02};
+  EXPECT_NEAR(PointEnergy(tukey, 1, {0.02, 0.5}), 4.0 / 3, 1e-9);
+}
+
+TEST(ResidualSink, AWeightMeansTheSameForAnyNumberOfPoints) {
+  const TermOptions options{"", 2, LossKind::kCauchy, 0.01};
+  const double once = PointEnergy(options, 1, {0.01, 0.03});
+  std::vector<double> many;
+  for (int i = 0; i < 1000; ++i) many.insert(many.end(), {0.01, 0.03});
+  EXPECT_NEAR(PointEnergy(options, 1, many), once, 1e-9 * once);
+}
+
+TEST(ResidualSink, AnnealingMultipliesTheWeight) {
+  const TermOptions options{"", 2, LossKind::kHuber, 0.01};
+  EXPECT_NEAR(PointEnergy(options, 8, {0.05}),
+              8 * PointEnergy(options, 1, {0.05}), 1e-9);
+}
+
+TEST(ResidualSink, NodeResidualsAreNormalisedAlike) {
+  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  const TermOptions options{"", 6, LossKind::kHuber, 0.05};
+  ResidualSink sink(graph, options, 0.5);
+  // |(3, 4)| = 5 cm is an inlier still: 25; 10 cm: 2 * 5 * 10 - 25 = 75.
+  sink.AddNodes({{0}, {0}}, std::vector<Constant>{{0.03, 0.04}, {0.06, 0.08}});
+  EXPECT_EQ(sink.residual_vectors(), 2);
+  EXPECT_NEAR(EnergyOf(&sink), 0.5 * 6 / 2 * (25 + 75), 1e-9);
+}
+
+TEST(ResidualSink, PointsOfTheSameNodesShareABlock) {
+  DeformationGraph graph;
+  graph.positions = {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}};
+  graph.motions.resize(3);
+  std::vector<ModelSample> samples(1200, SampleAt(1));
+  for (int i = 0; i < 1200; ++i) {
+    Skinning& skinning = samples[i].skinning;
+    skinning.count = 2;
+    skinning.nodes = {i % 2, 2};
+    skinning.weights = {0.5f, 0.5f};
+  }
+  std::vector<const ModelSample*> pointers;
+  for (const ModelSample& sample : samples) pointers.push_back(&sample);
+  const TermOptions options;
+  ResidualSink sink(graph, options, 1);
+  sink.AddWarpedPoints(pointers, std::vector<DepthError>(1200, {0.9}));
+  // Two sets of 600 points, at most 512 in a block.
+  ASSERT_EQ(sink.blocks().size(), 4u);
+  for (const ResidualBlock& block : sink.blocks()) {
+    EXPECT_EQ(block.nodes[1], 2);
+  }
+  EXPECT_NEAR(EnergyOf(&sink), 100, 1e-6);
+}
+
+TEST(ResidualSink, NothingAddedIsNothing) {
+  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  const TermOptions options;
+  ResidualSink sink(graph, options, 1);
+  sink.AddWarpedPoints({}, std::vector<DepthError>());
+  sink.AddNodes({}, std::vector<Constant>());
+  EXPECT_TRUE(sink.blocks().empty());
+  EXPECT_EQ(sink.residual_vectors(), 0);
+}
+
+}  // namespace
+}  // namespace splitfusion

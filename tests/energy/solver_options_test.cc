@@ -1,0 +1,72 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "splitfusion/lib/energy/solver.h"
+#include "support/expect_input_error.h"
+
+namespace splitfusion {
+namespace {
+
+void ExpectRefused(const std::function<void(SolverOptions*)>& set,
+                   const std::string& message) {
+  SolverOptions options;
+  set(&options);
+  ExpectInputError([&] { options.Check(); }, message);
+}
+
+TEST(SolverOptions, DefaultsAndKnownNamesPass) {
+  SolverOptions options;
+  for (const char* solver : {"auto", "dense_qr", "dense_normal_cholesky",
+                             "sparse_normal_cholesky", "cgnr"}) {
+    options.linear_solver = solver;
+    EXPECT_NO_THROW(options.Check()) << solver;
+  }
+}
+
+TEST(SolverOptions, UnknownNamesListTheKnownOnes) {
+  const std::string solvers =
+      "expected auto, dense_qr, dense_normal_cholesky, "
+      "sparse_normal_cholesky or cgnr";
+  for (const char* name : {"cholesky", "", "dense_schur", "iterative_schur"}) {
+    ExpectRefused([&](SolverOptions* o) { o->linear_solver = name; },
+                  std::string("linear_solver = ") + name + ": " + solvers);
+  }
+  ExpectRefused([](SolverOptions* o) { o->preconditioner = "schur_jacobi"; },
+                "preconditioner = schur_jacobi: expected jacobi or identity");
+  ExpectRefused([](SolverOptions* o) { o->trust_region = "newton"; },
+                "trust_region = newton: expected levenberg_marquardt or "
+                "dogleg");
+}
+
+TEST(SolverOptions, DoglegNeedsAFactorisation) {
+  ExpectRefused(
+      [](SolverOptions* o) {
+        o->trust_region = "dogleg";
+        o->linear_solver = "cgnr";
+      },
+      "trust_region = dogleg: expected levenberg_marquardt with "
+      "linear_solver cgnr");
+}
+
+TEST(SolverOptions, RefuseValuesOutOfRange) {
+  ExpectRefused([](SolverOptions* o) { o->threads = 0; },
+                "solver_threads = 0: expected >= 1");
+  ExpectRefused([](SolverOptions* o) { o->max_iterations = 0; },
+                "max_iterations = 0: expected >= 1");
+  ExpectRefused([](SolverOptions* o) { o->max_linear_solver_iterations = -3; },
+                "max_linear_solver_iterations = -3: expected >= 1");
+  ExpectRefused([](SolverOptions* o) { o->eta = 1; },
+                "eta = 1: expected between 0 and 1");
+  ExpectRefused([](SolverOptions* o) { o->function_tolerance = -1; },
+                "function_tolerance = -1: expected >= 0");
+  ExpectRefused([](SolverOptions* o) { o->gradient_tolerance = -1; },
+                "gradient_tolerance = -1: expected >= 0");
+  ExpectRefused([](SolverOptions* o) { o->parameter_tolerance = -1; },
+                "parameter_tolerance = -1: expected >= 0");
+  ExpectRefused([](SolverOptions* o) { o->initial_radius = 0; },
+                "initial_radius = 0: expected > 0");
+}
+
+}  // namespace
+}  // namespace splitfusion

@@ -1,0 +1,284 @@
+#include "splitfusion/lib/energy/solver.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <tuple>
+
+#include "splitfusion/cost_functions/builtin_terms.h"
+#include "support/sample_correspondences.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+
+namespace splitfusion {
+namespace {
+
+using Map = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
+
+Energy ParsedEnergy(const std::string& text) {
+  return ParseEnergy(text, BuiltinTerms());
+}
+
+SolverOptions Thorough() {
+  SolverOptions options;
+  options.max_iterations = 50;
+  options.function_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-12;
+  return options;
+}
+
+/// Associates with the true places and minimises, a few times.
+SolverReport Fit(const TriangleMesh& mesh, const Map& truth,
+                 const Energy& energy, const SolverOptions& options,
+                 DeformationGraph* graph) {
+  SolverReport report;
+  for (int round = 0; round < 8; ++round) {
+    const auto correspondences = PerfectAssociation(mesh, *graph, truth);
+    report = MinimizeWithCeres({energy, correspondences, PinholeCamera()},
+                               options, graph);
+  }
+  return report;
+}
+
+/// Mean distance of warped vertices to where they should be, metres.
+double MeanError(const std::vector<Eigen::Vector3f>& vertices, const Map& truth,
+                 const DeformationGraph& graph) {
+  const SkinningIndex index(graph, 6);
+  const WarpField warp(graph);
+  double sum = 0;
+  for (const Eigen::Vector3f& v : vertices) {
+    const Eigen::Vector3d x = warp.WarpPoint(index.Skin(v), v).cast<double>();
+    sum += (x - truth(v.cast<double>())).norm();
+  }
+  return sum / static_cast<double>(vertices.size());
+}
+
+bool SameBytes(const DeformationGraph& a, const DeformationGraph& b) {
+  return a.motions.size() == b.motions.size() &&
+         std::memcmp(a.motions.data(), b.motions.data(),
+                     a.motions.size() * sizeof(NodeMotion)) == 0;
+}
+
+TEST(Solver, RecoversARigidMotion) {
+  const TriangleMesh mesh = CornerMesh(0.02);
+  const Rigid3d truth = MakeMotion({0.1, -0.15, 0.2}, {0.05, -0.03, 0.1});
+  DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  const SolverReport report = Fit(
+      mesh, [&](const Eigen::Vector3d& p) { return truth * p; },
+      ParsedEnergy("point_to_plane"), SolverOptions(), &graph);
+  EXPECT_TRUE(report.usable);
+  const Rigid3d error = MeanRigidMotion(graph).inverse() * truth;
+  EXPECT_LT(error.translation().norm(), 1e-5);
+  EXPECT_LT(RotationAngle(error.linear()), 1e-5);
+  EXPECT_EQ(report.parameters, 6);
+}
+
+TEST(Solver, RecoversABend) {
+  // The plate z = 1 is rolled up; the walls beside it hold it in its place.
+  const TriangleMesh mesh = CornerMesh(0.01);
+  const auto bend = [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); };
+  std::vector<Eigen::Vector3f> plate;
+  for (const Eigen::Vector3f& v : mesh.vertices) {
+    if (v.z() > 0.999f) plate.push_back(v);
+  }
+  DeformationGraph graph = CoverWithNodes(mesh, 0.03);
+  EXPECT_GT(MeanError(plate, bend, graph), 6e-3);
+  Fit(mesh, bend, ParsedEnergy("point_to_plane(weight=1) arap(weight=0.1)"),
+      SolverOptions(), &graph);
+  EXPECT_LT(MeanError(plate, bend, graph), 1.5e-3);
+}
+
+TEST(Solver, AStiffPriorKeepsThePlateRigid) {
+  const TriangleMesh mesh = PlateMesh(0.3, 0.2, 0.01, 1);
+  const auto bend = [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.5); };
+  const auto deformation = [&](const std::string& terms) {
+    DeformationGraph graph = CoverWithNodes(mesh, 0.04);
+    Fit(mesh, bend, ParsedEnergy(terms), SolverOptions(), &graph);
+    const Rigid3d mean = MeanRigidMotion(graph);
+    double largest = 0;
+    for (int i = 0; i < graph.size(); ++i) {
+      const Eigen::Vector3d& g = graph.positions[i];
+      largest = std::max(largest,
+                         (g + graph.motions[i].translation - mean * g).norm());
+    }
+    return largest;
+  };
+  EXPECT_LT(deformation("point_to_plane arap(weight=1e6)"), 1e-3);
+  EXPECT_GT(deformation("point_to_plane arap(weight=0.1)"), 1e-2);
+}
+
+using Names = std::tuple<const char*, const char*, const char*>;
+class EverySolver : public ::testing::TestWithParam<Names> {};
+
+TEST_P(EverySolver, FindsTheSameMinimum) {
+  const TriangleMesh mesh = CornerMesh(0.02);
+  const DeformationGraph start = CoverWithNodes(mesh, 0.04);
+  const auto correspondences = PerfectAssociation(
+      mesh, start, [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  const Energy energy =
+      ParsedEnergy("point_to_plane(loss=huber) arap(weight=3)");
+  DeformationGraph reference = start;
+  const double cost =
+      MinimizeWithCeres({energy, correspondences, PinholeCamera()}, Thorough(),
+                        &reference)
+          .final_cost;
+  SolverOptions options = Thorough();
+  std::tie(options.linear_solver, options.preconditioner,
+           options.trust_region) = GetParam();
+  options.eta = 1e-6;
+  options.max_linear_solver_iterations = 1000;
+  options.Check();
+  DeformationGraph graph = start;
+  const SolverReport report = MinimizeWithCeres(
+      {energy, correspondences, PinholeCamera()}, options, &graph);
+  EXPECT_TRUE(report.usable);
+  EXPECT_NEAR(report.final_cost, cost, 1e-6 * cost);
+  for (int i = 0; i < graph.size(); ++i) {
+    EXPECT_LT((graph.motions[i].translation - reference.motions[i].translation)
+                  .norm(),
+              1e-5);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Names, EverySolver,
+    ::testing::Values(
+        Names{"auto", "jacobi", "levenberg_marquardt"},
+        Names{"dense_qr", "jacobi", "levenberg_marquardt"},
+        Names{"dense_normal_cholesky", "jacobi", "levenberg_marquardt"},
+        Names{"sparse_normal_cholesky", "jacobi", "levenberg_marquardt"},
+        Names{"cgnr", "jacobi", "levenberg_marquardt"},
+        Names{"cgnr", "identity", "levenberg_marquardt"},
+        Names{"auto", "jacobi", "dogleg"},
+        Names{"dense_qr", "jacobi", "dogleg"},
+        Names{"dense_normal_cholesky", "jacobi", "dogleg"},
+        Names{"sparse_normal_cholesky", "jacobi", "dogleg"}),
+    [](const auto& info) {
+      return std::string(std::get<0>(info.param)) + "_" +
+             std::get<1>(info.param) + "_" + std::get<2>(info.param);
+    });
+
+class BentPlateProblem : public ::testing::Test {
+ protected:
+  BentPlateProblem() : start_(CoverWithNodes(mesh_, 0.04)) {
+    Shake(0.005, /*seed=*/1, &start_);
+    correspondences_ = PerfectAssociation(
+        mesh_, start_,
+        [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  }
+
+  SolverReport Minimize(const SolverOptions& options, DeformationGraph* graph,
+                        double prior_factor = 1) const {
+    return MinimizeWithCeres(
+        {energy_, correspondences_, PinholeCamera(), prior_factor}, options,
+        graph);
+  }
+
+  const TriangleMesh mesh_ = PlateMesh(0.2, 0.1, 0.02, 1);
+  const Energy energy_ =
+      ParsedEnergy("point_to_plane(loss=tukey,scale=0.05) arap(weight=3)");
+  DeformationGraph start_;
+  std::vector<Correspondence> correspondences_;
+};
+
+TEST_F(BentPlateProblem, ReportAccountsForTheCost) {
+  DeformationGraph graph = start_;
+  SolverOptions options;
+  options.max_iterations = 5;
+  const SolverReport report = Minimize(options, &graph);
+  ASSERT_EQ(report.terms.size(), 2u);
+  EXPECT_EQ(report.terms[0].term, "point_to_plane");
+  EXPECT_EQ(report.terms[1].term, "arap");
+  EXPECT_EQ(report.terms[0].residual_vectors,
+            static_cast<int>(mesh_.vertices.size()));
+  EXPECT_NEAR(report.terms[0].initial + report.terms[1].initial,
+              report.initial_cost, 1e-9 * report.initial_cost);
+  EXPECT_NEAR(report.terms[0].final + report.terms[1].final, report.final_cost,
+              1e-9 * report.initial_cost);
+  EXPECT_LT(report.final_cost, report.initial_cost);
+  EXPECT_EQ(report.parameters, 6 * graph.size());
+  ASSERT_GE(report.iterations.size(), 2u);
+  EXPECT_EQ(report.iterations[0].iteration, 0);
+  EXPECT_EQ(report.iterations[0].cost, report.initial_cost);
+  for (const SolverIteration& iteration : report.iterations) {
+    EXPECT_LE(iteration.cost, report.initial_cost);
+    EXPECT_GT(iteration.trust_region_radius, 0);
+  }
+  EXPECT_TRUE(report.full_report.empty());
+}
+
+TEST_F(BentPlateProblem, FullReportComesOnRequest) {
+  DeformationGraph graph = start_;
+  SolverOptions options;
+  options.full_report = true;
+  EXPECT_NE(Minimize(options, &graph).full_report.find("Solver Summary"),
+            std::string::npos);
+}
+
+TEST_F(BentPlateProblem, AnnealingCountsForThePriorAlone) {
+  DeformationGraph graph = start_;
+  const SolverReport plain = Minimize(SolverOptions(), &graph);
+  graph = start_;
+  const SolverReport annealed = Minimize(SolverOptions(), &graph, 8);
+  EXPECT_NEAR(annealed.terms[0].initial, plain.terms[0].initial, 1e-12);
+  EXPECT_NEAR(annealed.terms[1].initial, 8 * plain.terms[1].initial,
+              1e-9 * annealed.terms[1].initial);
+}
+
+TEST_F(BentPlateProblem, AStepFromTheResultStartsAtItsCost) {
+  // What the report says of the twists holds for the composed motions, too.
+  DeformationGraph graph = start_;
+  const SolverReport first = Minimize(SolverOptions(), &graph);
+  const SolverReport second = Minimize(SolverOptions(), &graph);
+  EXPECT_NEAR(second.initial_cost, first.final_cost, 1e-9 * first.final_cost);
+}
+
+TEST_F(BentPlateProblem, TwoRunsGiveTheSameBytes) {
+  for (const char* solver : {"sparse_normal_cholesky", "cgnr"}) {
+    SolverOptions options;
+    options.linear_solver = solver;
+    DeformationGraph first = start_, second = start_;
+    Minimize(options, &first);
+    Minimize(options, &second);
+    EXPECT_TRUE(SameBytes(first, second)) << solver;
+    EXPECT_FALSE(SameBytes(first, start_)) << solver;
+  }
+}
+
+TEST_F(BentPlateProblem, AFailureLeavesTheGraphAsItWas) {
+  correspondences_[3].target.x() = std::numeric_limits<float>::quiet_NaN();
+  DeformationGraph graph = start_;
+  const SolverReport report = Minimize(SolverOptions(), &graph);
+  EXPECT_FALSE(report.usable);
+  EXPECT_EQ(report.termination, "FAILURE");
+  EXPECT_FALSE(report.message.empty());
+  EXPECT_TRUE(SameBytes(graph, start_));
+}
+
+TEST_F(BentPlateProblem, NodesWithoutAnyPointStayWhereThePriorHoldsThem) {
+  correspondences_.resize(1);
+  DeformationGraph graph = start_;
+  const SolverReport report = Minimize(Thorough(), &graph);
+  EXPECT_TRUE(report.usable);
+  for (const NodeMotion& motion : graph.motions) {
+    EXPECT_TRUE(motion.translation.allFinite());
+    EXPECT_LT(motion.translation.norm(), 0.3);
+  }
+}
+
+TEST(Solver, AnEmptyProblemChangesNothing) {
+  const Energy energy = ParsedEnergy("point_to_plane arap");
+  DeformationGraph graph = MakeRigidGraph(MakeMotion({0.1, 0, 0}, {0, 0, 1}));
+  const DeformationGraph before = graph;
+  const SolverReport report =
+      MinimizeWithCeres({energy, {}, PinholeCamera()}, SolverOptions(), &graph);
+  EXPECT_EQ(report.final_cost, 0);
+  EXPECT_LT((graph.motions[0].rotation - before.motions[0].rotation).norm(),
+            1e-12);
+  EXPECT_EQ(graph.motions[0].translation, before.motions[0].translation);
+}
+
+}  // namespace
+}  // namespace splitfusion

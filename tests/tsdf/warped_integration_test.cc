@@ -1,0 +1,145 @@
+#include "splitfusion/lib/tsdf/warped_integration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "splitfusion/lib/geometry/kd_tree.h"
+#include "support/sample_depth.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr double kVoxel = 0.005;
+const TsdfOptions kOptions = {kVoxel, 0.03, 64};
+
+/// A plate around the optical axis at z = 1 m, canonical frame.
+TriangleMesh CenteredPlate() {
+  return SheetMesh(0.3, 0.2, 0.01, [](double x, double y) {
+    return Eigen::Vector3d(x - 0.15, y - 0.1, 1);
+  });
+}
+
+TriangleMesh Moved(
+    const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& map) {
+  TriangleMesh mesh = CenteredPlate();
+  for (Eigen::Vector3f& v : mesh.vertices) {
+    v = map(v.cast<double>()).cast<float>();
+  }
+  return mesh;
+}
+
+/// 320x240 pixels, so that a voxel is about a pixel.
+PinholeCamera Camera() {
+  PinholeCamera camera = SmallCamera();
+  camera.width *= 2, camera.height *= 2;
+  camera.fx *= 2, camera.fy *= 2, camera.cx *= 2, camera.cy *= 2;
+  return camera;
+}
+
+class WarpedIntegration : public ::testing::Test {
+ protected:
+  WarpedIntegration()
+      : graph_(CoverWithNodes(CenteredPlate(), 0.03)),
+        index_(graph_, 6),
+        volume_(kOptions) {
+    AllocateAround(graph_.positions, kReach, &volume_);
+  }
+
+  void Integrate(const TriangleMesh& live) {
+    integrator_.Integrate(ObserveAll(Camera(), MeshDepth(Camera(), live)),
+                          index_, WarpField(graph_), kReach, &volume_);
+  }
+
+  static constexpr double kReach = 0.06;
+  DeformationGraph graph_;
+  SkinningIndex index_;
+  TsdfVolume volume_;
+  WarpedIntegrator integrator_;
+};
+
+TEST_F(WarpedIntegration, ARigidWarpIsRigidIntegration) {
+  const Rigid3d motion = MakeMotion({0.1, -0.2, 0.3}, {0.02, 0.01, 0.05});
+  ApplyRigidMotion(motion, &graph_);
+  const TriangleMesh live =
+      Moved([&](const Eigen::Vector3d& p) { return motion * p; });
+  Integrate(live);
+  TsdfVolume rigid(kOptions);
+  AllocateAround(graph_.positions, kReach, &rigid);
+  IntegrateRigid(ObserveAll(Camera(), MeshDepth(Camera(), live)), motion,
+                 &rigid);
+  const TriangleMesh a = ExtractMesh(volume_, 0.5);
+  const TriangleMesh b = ExtractMesh(rigid, 0.5);
+  ASSERT_GT(a.vertices.size(), 1500u);
+  // A voxel centre on the border of two pixels may fall to either.
+  EXPECT_NEAR(static_cast<double>(a.vertices.size()) / b.vertices.size(), 1,
+              0.01);
+  const KdTree tree(b.vertices);
+  int apart = 0;
+  for (const Eigen::Vector3f& v : a.vertices) {
+    float distance = 0;
+    tree.Nearest(v, &distance);
+    apart += distance > 1e-4f;
+  }
+  EXPECT_LT(apart, 0.02 * a.vertices.size());
+}
+
+TEST_F(WarpedIntegration, ABentPlateComesBackFlat) {
+  const auto bend = [](const Eigen::Vector3d& p) { return Bend(p, 1, 2.0); };
+  MoveNodes(bend, &graph_);
+  Integrate(Moved(bend));
+  const TriangleMesh mesh = ExtractMesh(volume_, 0.5);
+  ASSERT_GT(mesh.vertices.size(), 1500u);
+  double sum = 0;
+  for (const Eigen::Vector3f& v : mesh.vertices) {
+    sum += std::abs(v.z() - 1);
+    EXPECT_LT(std::abs(v.z() - 1), 1.0 * kVoxel);  // Bent by 22 mm.
+  }
+  EXPECT_LT(sum / mesh.vertices.size(), 0.3 * kVoxel);
+}
+
+TEST_F(WarpedIntegration, MotionsThroughTimeFuseIntoOnePlate) {
+  for (const double curvature : {0.01, 0.7, 1.4, -1.0}) {
+    const auto bend = [&](const Eigen::Vector3d& p) {
+      return Bend(p, 1, curvature);
+    };
+    MoveNodes(bend, &graph_);
+    Integrate(Moved(bend));
+  }
+  int off = 0;
+  const TriangleMesh mesh = ExtractMesh(volume_, 3.5);
+  ASSERT_GT(mesh.vertices.size(), 1200u);
+  for (const Eigen::Vector3f& v : mesh.vertices) {
+    off += std::abs(v.z() - 1) > 0.5 * kVoxel;
+  }
+  EXPECT_LT(off, 0.02 * mesh.vertices.size());
+}
+
+TEST_F(WarpedIntegration, SkinningIsKeptAndMadeAnew) {
+  Integrate(CenteredPlate());
+  const TriangleMesh before = ExtractMesh(volume_, 0.5);
+  integrator_.InvalidateSkinning();
+  Integrate(CenteredPlate());
+  const TriangleMesh after = ExtractMesh(volume_, 0.5);
+  ASSERT_EQ(before.vertices.size(), after.vertices.size());
+  for (std::size_t i = 0; i < after.vertices.size(); ++i) {
+    EXPECT_LT((before.vertices[i] - after.vertices[i]).norm(), 1e-5);
+  }
+}
+
+TEST_F(WarpedIntegration, BlocksOutOfReachAreLeftAlone) {
+  // A second plate, 0.3 m aside, where there is no node.
+  const Rigid3d aside = MakeMotion({0, 0, 0}, {0.3, 0, 0});
+  AllocateAround({aside * Eigen::Vector3d(0.1, 0, 1)}, 0.08, &volume_);
+  TriangleMesh live = CenteredPlate();
+  AppendMesh(Moved([&](const Eigen::Vector3d& p) { return aside * p; }), &live);
+  Integrate(live);
+  for (const Eigen::Vector3f& v : ExtractMesh(volume_, 0.5).vertices) {
+    EXPECT_LT(v.x(), 0.15 + kReach + 8 * kVoxel);
+  }
+}
+
+}  // namespace
+}  // namespace splitfusion
