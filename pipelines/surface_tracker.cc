@@ -82,6 +82,14 @@ TrackingStage FittedStage(const TrackingStage& stage, int min_samples,
   return fitted;
 }
 
+/// Mean confidence of the correspondences: the priors' weights follow it, so
+/// that their balance with the data is the same at any range.
+double MeanConfidence(const std::vector<Correspondence>& correspondences) {
+  double sum = 0;
+  for (const Correspondence& c : correspondences) sum += c.weight;
+  return sum / std::max<std::size_t>(1, correspondences.size());
+}
+
 int TotalRounds(const std::vector<TrackingStage>& stages) {
   int rounds = 0;
   for (const TrackingStage& stage : stages) rounds += stage.rounds;
@@ -261,7 +269,8 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   bool settled = true;
   if (!association.correspondences.empty()) {
     round.solver = Minimize(
-        {energy_, association.correspondences, live.camera, prior_factor}, solver_, graph);
+        {energy_, association.correspondences, live.camera,
+         prior_factor * MeanConfidence(association.correspondences)}, solver_, graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||
               round.solver.initial_cost - round.solver.final_cost <

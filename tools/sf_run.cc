@@ -6,11 +6,12 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <filesystem>
+#include <iomanip>
 #include <memory>
 #include <string>
 
 #include "run_flags.h"
+#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/blas_threads.h"
@@ -35,7 +36,7 @@ DEFINE_string(labels, "", "File `class, rigid|non_rigid` a line.");
 DEFINE_int32(threads, 2, "Threads of all but Ceres.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
-DEFINE_bool(write_masks, false, "Write refined masks of every frame.");
+DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
 DECLARE_string(preset);
 
 namespace splitfusion {
@@ -62,7 +63,9 @@ class Run {
                                      : LabelTable::FromFile(FLAGS_labels),
                 MakeSegmenter()),
         directory_(FLAGS_output, FLAGS_overwrite,
-                   {FLAGS_preset, FlagfileText(), LibraryVersions()}) {}
+                   {FLAGS_preset, FlagfileText(), LibraryVersions()}) {
+    WriteCalibration();
+  }
 
   void Execute() {
     try {
@@ -78,6 +81,20 @@ class Run {
   }
 
  private:
+  /// The intrinsics in use, so that the run can be evaluated by itself.
+  void WriteCalibration() const {
+    const Calibration& used = reader_.calibration();
+    WriteFileAtomically(
+        directory_.paths().Calibration(), [&](std::ostream& out) {
+          out << std::setprecision(17)
+              << "# fx fy cx cy width height depth_factor\n"
+              << used.camera.fx << ' ' << used.camera.fy << ' '
+              << used.camera.cx << ' ' << used.camera.cy << ' '
+              << used.camera.width << ' ' << used.camera.height << ' '
+              << used.depth_scale << '\n';
+        });
+  }
+
   bool ProcessNext() {
     const Stopwatch reading;
     const std::optional<Frame> frame = reader_.Next();

@@ -15,6 +15,7 @@ class RunPaths {
   /// The run directory itself.
   const std::string& root() const { return root_; }
   std::string Options() const;                ///< RUN/options.flags
+  std::string Calibration() const;            ///< RUN/calibration.txt
   std::string Trajectory() const;             ///< RUN/trajectory.txt
   std::string Frames() const;                 ///< RUN/frames.jsonl
   std::string Iterations() const;             ///< RUN/iterations.csv
