@@ -50,6 +50,7 @@ void SurfaceOptions::Check() const {
   tsdf.Check();
   graph.Check();
   CheckOption(min_mesh_weight > 0, "min_mesh_weight", min_mesh_weight, "> 0");
+  CheckOption(growth_reach > 0, "growth_reach", growth_reach, "metres > 0");
 }
 
 Surface::Surface(int id, std::string label, SurfaceKind kind, int first_frame,
@@ -102,10 +103,43 @@ void Surface::Fuse(const LiveView& live) {
     AllocateBand(observation, camera_from_canonical, &volume_);
     IntegrateRigid(observation, camera_from_canonical, &volume_);
   } else {
+    AllocateUncovered(live);
     integrator_.Integrate(observation, *index_, WarpField(graph_),
-                          graph_.node_spacing + options_.tsdf.truncation,
-                          &volume_);
+                          options_.growth_reach, &volume_);
   }
+}
+
+void Surface::AllocateUncovered(const LiveView& live) {
+  std::vector<Eigen::Vector3f> centers;
+  for (int i = 0; i < graph_.size(); ++i) {
+    centers.push_back(
+        (graph_.positions[i] + graph_.motions[i].translation).cast<float>());
+  }
+  const KdTree nodes(centers);
+  std::vector<Eigen::Vector3d> uncovered;
+  constexpr int kPixelStride = 4;
+  for (int v = 0; v < live.depth.rows; v += kPixelStride) {
+    for (int u = 0; u < live.depth.cols; u += kPixelStride) {
+      if (live.labels(v, u) != id_ || !(live.depth(v, u) > 0) ||
+          live.edges(v, u) != 0 || live.uncertain(v, u) != 0) {
+        continue;
+      }
+      const cv::Vec3f& p = live.map.points(v, u);
+      const Eigen::Vector3f point(p[0], p[1], p[2]);
+      float distance = 0;
+      const int node = nodes.Nearest(point, &distance);
+      if (distance < graph_.node_spacing || distance > options_.growth_reach) {
+        continue;
+      }
+      // Eq. 1 of the nearest node, inverted.
+      const Eigen::Vector3d offset =
+          point.cast<double>() - centers[node].cast<double>();
+      uncovered.push_back(
+          graph_.motions[node].rotation.transpose() * offset +
+          graph_.positions[node]);
+    }
+  }
+  AllocateAround(uncovered, options_.tsdf.truncation, &volume_);
 }
 
 void Surface::UpdateMesh(bool grow) {

@@ -23,6 +23,9 @@ struct SurfaceOptions {
   /// Observations a voxel needs before it is meshed (weights, about frames at
   /// close range).
   double min_mesh_weight = 0.05;
+  /// A non-rigid surface grows over live points that are no farther than this
+  /// from a node, metres: as far as a newly seen limb reaches in one frame.
+  double growth_reach = 0.35;
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
@@ -81,6 +84,7 @@ class Surface {
 
  private:
   void PlaceGraph(const LiveView& live);
+  void AllocateUncovered(const LiveView& live);
   void RefreshSkinning();
 
   int id_;

@@ -1,5 +1,7 @@
 #include "splitfusion/lib/deformation/graph_growth.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +10,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/deformation/surface_edges.h"
+#include "splitfusion/lib/geometry/kd_tree.h"
 
 namespace splitfusion {
 namespace {
@@ -46,21 +49,40 @@ class CoverGrid {
   std::map<Key, std::vector<Eigen::Vector3d>> cells_;
 };
 
+/// Clears the flag of every vertex that a node of the graph covers.
+void CloseNear(const TriangleMesh& mesh, const DeformationGraph& graph,
+               double spacing, std::vector<char>* open) {
+  std::vector<Eigen::Vector3f> nodes;
+  for (const Eigen::Vector3d& g : graph.positions) {
+    nodes.push_back(g.cast<float>());
+  }
+  const KdTree tree(nodes);
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, open->size(), 2048),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          float distance = 0;
+          tree.Nearest(mesh.vertices[i], &distance);
+          if (distance < spacing) (*open)[i] = false;
+        }
+      });
+}
+
 /// Vertices that keep `spacing` from the nodes and from one another, greedily
 /// in vertex order. Specks of the mesh (vertices without a triangle) get none.
 std::vector<Eigen::Vector3d> UncoveredPositions(const TriangleMesh& mesh,
                                                 const DeformationGraph& graph,
                                                 double spacing) {
-  CoverGrid cover(spacing);
-  for (const Eigen::Vector3d& g : graph.positions) cover.Insert(g);
-  std::vector<bool> used(mesh.vertices.size(), false);
+  std::vector<char> open(mesh.vertices.size(), false);
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) used[t[k]] = true;
+    for (int k = 0; k < 3; ++k) open[t[k]] = true;
   }
+  if (graph.size() > 0) CloseNear(mesh, graph, spacing, &open);
+  CoverGrid cover(spacing);
   std::vector<Eigen::Vector3d> added;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Eigen::Vector3d p = mesh.vertices[i].cast<double>();
-    if (!used[i] || cover.Covers(p)) continue;
+    if (!open[i] || cover.Covers(p)) continue;
     cover.Insert(p);
     added.push_back(p);
   }
