@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 
@@ -55,13 +54,14 @@ void PipelineOptions::Check() const {
 SplitFusion::SplitFusion(const PinholeCamera& camera,
                          const PipelineOptions& options,
                          const LabelTable& labels,
-                         std::shared_ptr<Segmenter> segmenter)
+                         std::shared_ptr<Segmenter> segmenter,
+                         const TermRegistry& terms)
     : camera_(camera),
       options_(options),
       segmenter_(std::move(segmenter)),
       splitter_(camera, labels, options.split),
       tracker_(options.tracker, options.solver,
-               ParseEnergy(options.terms, BuiltinTerms())) {
+               ParseEnergy(options.terms, terms)) {
   options_.Check();
   camera_.Check();
 }

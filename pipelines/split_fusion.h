@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/report/frame_report.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/sequence/trajectory.h"
@@ -48,10 +49,12 @@ struct PipelineOptions {
 /// surfaces. Feed frames in order; read surfaces and trajectory at any time.
 class SplitFusion {
  public:
-  /// `segmenter` may be null: then nothing is split off.
+  /// `segmenter` may be null: then nothing is split off. `terms`: what the
+  /// energy of the options may name; add your own to the built-in ones.
   /// @throw InputError if an option is out of its range.
   SplitFusion(const PinholeCamera& camera, const PipelineOptions& options,
-              const LabelTable& labels, std::shared_ptr<Segmenter> segmenter);
+              const LabelTable& labels, std::shared_ptr<Segmenter> segmenter,
+              const TermRegistry& terms = BuiltinTerms());
 
   /// One frame of the paper's overview figure: split, track every surface,
   /// fuse every surface.

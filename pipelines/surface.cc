@@ -65,6 +65,8 @@ Surface::Surface(int id, std::string label, SurfaceKind kind, int first_frame,
 bool Surface::Initialize(const LiveView& live) {
   const DepthObservation observation = Observe(live, id_);
   AllocateBand(observation, Rigid3d::Identity(), &volume_);
+  // A surface that nothing was seen of could never be tracked.
+  if (volume_.leaf_count() == 0) return false;
   IntegrateRigid(observation, Rigid3d::Identity(), &volume_);
   if (!is_ray_cast()) {
     // One noisy view: anything seen once is surface.

@@ -123,6 +123,8 @@ void TrackerOptions::Check() const {
     }
   }
   CheckOption(!rigid.empty(), "rigid stages", rigid.size(), "at least one");
+  CheckOption(!non_rigid.empty(), "non_rigid stages", non_rigid.size(),
+              "at least one");
   CheckOption(prior_anneal >= 1, "prior_anneal", prior_anneal, ">= 1");
   CheckOption(settled >= 0, "settled", settled, ">= 0");
   CheckOption(min_correspondences >= 6, "min_correspondences",

@@ -210,6 +210,17 @@ std::vector<double> Moved(const std::vector<double>& twists,
   return moved;
 }
 
+/// Iteration 0, the start, as Ceres reports it.
+SolverIteration Start(const SolverReport& report, double gradient_max_norm,
+                      double radius) {
+  SolverIteration start;
+  start.cost = report.initial_cost;
+  start.gradient_max_norm = gradient_max_norm;
+  start.trust_region_radius = radius;
+  start.seconds = report.jacobian_seconds;
+  return start;
+}
+
 void AddTerms(const std::vector<TermBlocks>& terms,
               const std::vector<double>& initial,
               const std::vector<double>& final_costs, SolverReport* report) {
@@ -244,13 +255,18 @@ SolverReport MinimizeWithGaussNewton(const SurfaceProblem& input,
   std::vector<Vector6> gradient, step;
   double radius = options.initial_radius;
   bool linearized = false;
+  if (report.usable) {
+    problem.Assemble(&matrix, &gradient);
+    linearized = true;
+    report.iterations.push_back(Start(report, MaxNorm(gradient), radius));
+  }
   for (int i = 1; report.usable && i <= options.max_iterations; ++i) {
     const Stopwatch iteration_watch;
     SolverIteration iteration;
     iteration.iteration = i;
     watch.Restart();
     if (!linearized) {
-      if (i > 1) problem.Evaluate(twists, /*with_jacobians=*/true);
+      problem.Evaluate(twists, /*with_jacobians=*/true);
       report.jacobian_seconds += watch.Restart();
       problem.Assemble(&matrix, &gradient);
       linearized = true;

@@ -32,6 +32,8 @@ TEST(SolverOptions, UnknownNamesListTheKnownOnes) {
     ExpectRefused([&](SolverOptions* o) { o->linear_solver = name; },
                   std::string("linear_solver = ") + name + ": " + solvers);
   }
+  ExpectRefused([](SolverOptions* o) { o->solver = "lm"; },
+                "solver = lm: expected ceres or gn_pcg");
   ExpectRefused([](SolverOptions* o) { o->preconditioner = "schur_jacobi"; },
                 "preconditioner = schur_jacobi: expected jacobi or identity");
   ExpectRefused([](SolverOptions* o) { o->trust_region = "newton"; },

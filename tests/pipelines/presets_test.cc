@@ -1,0 +1,70 @@
+#include "splitfusion/pipelines/presets.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/expect_input_error.h"
+#include "support/synthetic_run.h"
+
+namespace splitfusion {
+namespace {
+
+/// Surfaces after some frames, as "kind" by id order.
+std::vector<std::string> KindsOf(const std::string& preset) {
+  PipelineOptions options;
+  ApplyPreset(preset, &options);
+  options.Check();
+  SyntheticRun run(SyntheticRun::Quick(), options);
+  for (int i = 0; i < 2; ++i) {
+    for (const SurfaceReport& surface : run.Next().surfaces) {
+      if (surface.id == 0) {
+        EXPECT_NE(surface.state, "lost") << preset << ": " << surface.reason;
+      }
+    }
+  }
+  std::vector<std::string> kinds;
+  for (const auto& [id, surface] : run.fusion().surfaces()) {
+    kinds.push_back(ToString(surface->kind()));
+  }
+  return kinds;
+}
+
+TEST(Presets, NamesAreTheMethodAndItsBaselines) {
+  EXPECT_EQ(PresetNames(), (std::vector<std::string>{
+                               "background_only", "cofusion", "dynamicfusion",
+                               "kinectfusion", "splitfusion"}));
+  PipelineOptions options;
+  ExpectInputError([&] { ApplyPreset("elasticfusion", &options); },
+                   "preset = elasticfusion: expected background_only, "
+                   "cofusion, dynamicfusion, kinectfusion, splitfusion");
+}
+
+TEST(Presets, SplitFusionHasARigidRoomAndNonRigidThings) {
+  const std::vector<std::string> kinds = KindsOf("splitfusion");
+  ASSERT_GE(kinds.size(), 2u);
+  EXPECT_EQ(kinds[0], "rigid");
+  EXPECT_EQ(kinds[1], "non_rigid");
+}
+
+TEST(Presets, CoFusionHasRigidThings) {
+  const std::vector<std::string> kinds = KindsOf("cofusion");
+  ASSERT_GE(kinds.size(), 2u);
+  EXPECT_EQ(std::count(kinds.begin(), kinds.end(), "rigid"),
+            static_cast<int>(kinds.size()));
+}
+
+TEST(Presets, KinectFusionIsOneRigidSurface) {
+  EXPECT_EQ(KindsOf("kinectfusion"), std::vector<std::string>{"rigid"});
+}
+
+TEST(Presets, DynamicFusionIsOneNonRigidSurface) {
+  EXPECT_EQ(KindsOf("dynamicfusion"), std::vector<std::string>{"non_rigid"});
+}
+
+TEST(Presets, BackgroundOnlyModelsNothingElse) {
+  EXPECT_EQ(KindsOf("background_only"), std::vector<std::string>{"rigid"});
+}
+
+}  // namespace
+}  // namespace splitfusion

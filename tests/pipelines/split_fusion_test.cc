@@ -1,0 +1,230 @@
+// The whole method on synthetic frames in memory.
+
+#include "splitfusion/pipelines/split_fusion.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <limits>
+#include <set>
+
+#include "splitfusion/lib/evaluation/trajectory_error.h"
+#include "support/expect_input_error.h"
+#include "support/synthetic_run.h"
+
+namespace splitfusion {
+namespace {
+
+const SurfaceReport* Find(const FrameReport& report, int id) {
+  for (const SurfaceReport& surface : report.surfaces) {
+    if (surface.id == id) return &surface;
+  }
+  return nullptr;
+}
+
+std::string StateOf(const FrameReport& report, int id) {
+  const SurfaceReport* surface = Find(report, id);
+  return surface == nullptr ? "none" : surface->state;
+}
+
+/// Id of the person's surface; -1 if there is none.
+int PersonId(const SplitFusion& fusion) {
+  for (const auto& [id, surface] : fusion.surfaces()) {
+    if (surface->label() == "person") return id;
+  }
+  return -1;
+}
+
+double PoseError(const SyntheticRun& run, const SplitFusion& fusion) {
+  const Trajectory truth = run.TrueTrajectory();
+  const Rigid3d expected = truth.front().world_from_camera.inverse() *
+                           truth.back().world_from_camera;
+  return (fusion.trajectory().back().world_from_camera.translation() -
+          expected.translation())
+      .norm();
+}
+
+void ExpectSoundReport(const FrameReport& report) {
+  const std::set<std::string> states = {"tracked", "born",    "lost",
+                                        "unseen",  "dropped", "merged"};
+  double parts = report.segment_seconds + report.split_seconds +
+                 report.render_seconds + report.associate_seconds +
+                 report.solve_seconds + report.fuse_seconds +
+                 report.mesh_seconds;
+  EXPECT_GT(report.total_seconds, 0);
+  EXPECT_LE(parts, 1.001 * report.total_seconds);
+  for (const SurfaceReport& surface : report.surfaces) {
+    EXPECT_EQ(states.count(surface.state), 1u) << surface.state;
+    EXPECT_EQ(surface.state == "lost" && surface.reason.empty(), false);
+    EXPECT_EQ(surface.state == "tracked" && !surface.reason.empty(), false);
+    EXPECT_FALSE(surface.label.empty());
+    for (const TrackingRound& round : surface.rounds) {
+      EXPECT_TRUE(round.stage == "rigid" || round.stage == "non_rigid");
+      EXPECT_GE(round.prior_factor, 1);
+      const AssociationCounts& c = round.association;
+      EXPECT_EQ(c.accepted + c.outside_image + c.no_depth + c.other_surface +
+                    c.depth_edge + c.distance + c.normal_angle + c.grazing,
+                c.model_points);
+      EXPECT_TRUE(std::isfinite(round.solver.final_cost));
+      EXPECT_LE(round.solver.final_cost, round.solver.initial_cost);
+    }
+  }
+}
+
+TEST(SplitFusion, TracksCameraAndPersonAndMapsBoth) {
+  SyntheticOptions scene;
+  scene.width = 320, scene.height = 240;
+  scene.frames = 10;
+  SyntheticRun run(scene);
+  const SplitFusion& fusion = run.fusion();
+  int person_tracked = 0;
+  for (int i = 0; i < scene.frames; ++i) {
+    const FrameReport report = run.Next();
+    ExpectSoundReport(report);
+    EXPECT_EQ(report.frame, i);
+    EXPECT_EQ(StateOf(report, 0), i == 0 ? "born" : "tracked");
+    person_tracked += StateOf(report, PersonId(fusion)) == "tracked";
+  }
+  EXPECT_GE(person_tracked, scene.frames - 3);
+  EXPECT_LT(CompareTrajectories(fusion.trajectory(), run.TrueTrajectory())
+                .absolute.rmse,
+            0.005);
+  const int person = PersonId(fusion);
+  ASSERT_GT(person, 0);
+  const Surface& body = *fusion.surfaces().at(person);
+  EXPECT_EQ(body.kind(), SurfaceKind::kNonRigid);
+  EXPECT_GT(body.graph().size(), 100);
+  EXPECT_GT(body.mesh().triangles.size(), 5000u);
+  EXPECT_LT(run.MedianDepthError(person), 0.010);
+  EXPECT_LT(run.MedianDepthError(0), 0.010);
+  run.fusion().Finish();
+  EXPECT_GT(fusion.surfaces().at(0)->mesh().vertices.size(), 20000u);
+  for (const auto& [id, surface] : fusion.surfaces()) {
+    EXPECT_EQ(surface->history().frames.front().frame, surface->first_frame());
+    for (const FrameMotions& motions : surface->history().frames) {
+      ASSERT_EQ(motions.motions.size(), surface->graph().positions.size());
+    }
+  }
+}
+
+TEST(SplitFusion, AFrameWithoutDepthIsLostAndSurvived) {
+  for (const float nothing : {0.f, std::numeric_limits<float>::quiet_NaN()}) {
+    SyntheticRun run(SyntheticRun::Quick());
+    for (int i = 0; i < 3; ++i) run.Next();
+    const FrameReport lost =
+        run.Next([&](Frame* frame, std::vector<InstanceMask>*) {
+          frame->depth.setTo(nothing);
+        });
+    ExpectSoundReport(lost);
+    EXPECT_EQ(StateOf(lost, 0), "lost");
+    EXPECT_NE(Find(lost, 0)->reason.find("correspondences"), std::string::npos)
+        << Find(lost, 0)->reason;
+    EXPECT_NE(StateOf(lost, PersonId(run.fusion())), "tracked");
+    EXPECT_TRUE(run.fusion()
+                    .trajectory()
+                    .back()
+                    .world_from_camera.matrix()
+                    .allFinite());
+    const FrameReport found = run.Next();
+    EXPECT_EQ(StateOf(found, 0), "tracked");
+    EXPECT_LT(PoseError(run, run.fusion()), 0.02);
+    EXPECT_EQ(run.fusion().trajectory().size(), 5u);
+    const FrameMotions* motions =
+        run.fusion().surfaces().at(0)->history().Find(3);
+    ASSERT_NE(motions, nullptr);
+    EXPECT_FALSE(motions->tracked);
+  }
+}
+
+TEST(SplitFusion, BeginsWithTheFirstFrameThatHasDepth) {
+  SyntheticRun run(SyntheticRun::Quick());
+  const FrameReport blind = run.Next(
+      [](Frame* frame, std::vector<InstanceMask>*) { frame->depth.setTo(0); });
+  EXPECT_TRUE(blind.surfaces.empty());
+  EXPECT_TRUE(run.fusion().surfaces().empty());
+  EXPECT_EQ(StateOf(run.Next(), 0), "born");
+  EXPECT_EQ(StateOf(run.Next(), 0), "tracked");
+  EXPECT_EQ(run.fusion().trajectory().size(), 3u);
+  run.fusion().Finish();
+  EXPECT_FALSE(run.fusion().surfaces().at(0)->mesh().empty());
+}
+
+TEST(SplitFusion, EmptyMasksAndBlackImagesAreNoHarm) {
+  SyntheticRun run(SyntheticRun::Quick());
+  for (int i = 0; i < 4; ++i) {
+    const FrameReport report =
+        run.Next([&](Frame* frame, std::vector<InstanceMask>* masks) {
+          if (i % 2 == 1) masks->clear();
+          for (InstanceMask& mask : *masks) mask.mask.setTo(0);
+          frame->color.setTo(0);
+        });
+    ExpectSoundReport(report);
+    EXPECT_EQ(StateOf(report, 0), i == 0 ? "born" : "tracked");
+  }
+  EXPECT_EQ(run.fusion().surfaces().size(), 1u);
+}
+
+TEST(SplitFusion, WithoutSegmenterThereIsOneSurface) {
+  const SyntheticScene scene(SyntheticRun::Quick());
+  SplitFusion fusion(scene.camera(), PipelineOptions(), LabelTable(), nullptr);
+  for (int i = 0; i < 2; ++i) fusion.ProcessFrame(scene.Render(i).frame);
+  EXPECT_EQ(fusion.surfaces().size(), 1u);
+  EXPECT_EQ(cv::countNonZero(fusion.labels()), 0);
+}
+
+TEST(SplitFusion, RunsAndThreadsGiveTheSameBytes) {
+  const auto run = [](int threads) {
+    const tbb::global_control control(
+        tbb::global_control::max_allowed_parallelism, threads);
+    auto result = std::make_unique<SyntheticRun>(SyntheticRun::Quick());
+    for (int i = 0; i < 4; ++i) result->Next();
+    result->fusion().Finish();
+    return result;
+  };
+  const auto two = run(2);
+  EXPECT_GT(two->fusion().surfaces().size(), 1u);
+  EXPECT_TRUE(SameResults(two->fusion(), run(2)->fusion())) << "two runs";
+  EXPECT_TRUE(SameResults(two->fusion(), run(1)->fusion())) << "one thread";
+}
+
+TEST(SplitFusion, RefusesFramesThatDoNotFit) {
+  const SyntheticScene scene(SyntheticRun::Quick());
+  SplitFusion fusion(scene.camera(), PipelineOptions(), LabelTable(), nullptr);
+  Frame frame = scene.Render(0).frame;
+  frame.depth = frame.depth(cv::Rect(0, 0, 80, 60));
+  ExpectInputError([&] { fusion.ProcessFrame(frame); }, "expected 8UC3 of");
+  frame.color = frame.color(cv::Rect(0, 0, 80, 60));
+  ExpectInputError([&] { fusion.ProcessFrame(frame); }, "depth image is 80x60");
+}
+
+/// Counts how often it was asked.
+class CountingTerm : public EnergyTerm {
+ public:
+  explicit CountingTerm(std::shared_ptr<int> count)
+      : count_(std::move(count)) {}
+  void AddResiduals(const EnergyInput&, ResidualSink*) const override {
+    ++*count_;
+  }
+
+ private:
+  std::shared_ptr<int> count_;
+};
+
+TEST(SplitFusion, TakesTermsOfOnesOwn) {
+  const auto count = std::make_shared<int>(0);
+  TermRegistry terms = BuiltinTerms();
+  terms.Register("counting",
+                 [=] { return std::make_unique<CountingTerm>(count); });
+  PipelineOptions options;
+  options.terms += " counting(weight=2)";
+  SyntheticRun run(SyntheticRun::Quick(), options, terms);
+  run.Next();
+  const FrameReport report = run.Next();
+  EXPECT_GT(*count, 0);
+  EXPECT_EQ(Find(report, 0)->rounds.at(0).solver.terms.back().term, "counting");
+  ExpectInputError([&] { SyntheticRun(SyntheticRun::Quick(), options); },
+                   "term 'counting' is unknown");
+}
+
+}  // namespace
+}  // namespace splitfusion
