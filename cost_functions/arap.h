@@ -25,6 +25,7 @@ namespace splitfusion {
 /// sqrt(weight). Zero for any common rigid motion of both nodes. Reading of the
 /// paper: docs/paper_map.md#eq-6
 struct Arap {
+  /// Residuals of one edge.
   static constexpr int kResiduals = 3;
   Eigen::Vector3d center_i;  ///< c_i = g_i + t_i, camera frame, metres.
   Eigen::Vector3d center_j;  ///< c_j = g_j + t_j.
@@ -48,8 +49,8 @@ struct Arap {
     ceres::AngleAxisRotatePoint(twists[0], q, rotated);
     for (int d = 0; d < 3; ++d) {
       residual[d] =
-          T(sqrt_weight) * (T(center_i[d]) + twists[0][3 + d] -
-                            T(center_j[d]) - twists[1][3 + d] - rotated[d]);
+          T(sqrt_weight) * (T(center_i[d]) + twists[0][3 + d] - T(center_j[d]) -
+                            twists[1][3 + d] - rotated[d]);
     }
     return true;
   }

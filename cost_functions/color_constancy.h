@@ -24,19 +24,22 @@ namespace splitfusion {
 ///
 /// Residual: 1, metres * sqrt(confidence). Zero for motions along the view ray.
 struct ColorConstancy {
+  /// Residuals of one point.
   static constexpr int kResiduals = 1;
+  /// m: metres that a grey value difference of 1 counts for.
   static constexpr double kMetresPerIntensity = 0.05;
-  double fx, fy, cx, cy;  ///< Live camera, pixels.
-  Eigen::Vector2d pixel;  ///< u_0, pixels.
+  PinholeCamera camera;      ///< Live camera.
+  Eigen::Vector2d pixel;     ///< u_0, pixels.
   Eigen::Vector2d gradient;  ///< grad I at u_0, 1 / pixel.
   double difference = 0;     ///< d, 0..1.
+  /// sqrt(c) of the confidence.
   double sqrt_confidence = 1;
 
   /// `x`: warped point, camera frame, metres.
   template <typename T>
   bool operator()(const T* x, T* residual) const {
-    const T du = T(fx) * x[0] / x[2] + T(cx - pixel.x());
-    const T dv = T(fy) * x[1] / x[2] + T(cy - pixel.y());
+    const T du = T(camera.fx) * x[0] / x[2] + T(camera.cx - pixel.x());
+    const T dv = T(camera.fy) * x[1] / x[2] + T(camera.cy - pixel.y());
     residual[0] = T(kMetresPerIntensity * sqrt_confidence) *
                   (T(difference) + T(gradient.x()) * du + T(gradient.y()) * dv);
     return true;
@@ -52,11 +55,9 @@ class ColorConstancyTerm : public EnergyTerm {
     std::vector<ColorConstancy> functors;
     samples.reserve(input.correspondences.size());
     functors.reserve(input.correspondences.size());
-    const PinholeCamera& camera = input.camera;
     for (const Correspondence& c : input.correspondences) {
       samples.push_back(&c.model);
-      functors.push_back({camera.fx, camera.fy, camera.cx, camera.cy,
-                          c.pixel.cast<double>(),
+      functors.push_back({input.camera, c.pixel.cast<double>(),
                           c.intensity_gradient.cast<double>(),
                           c.intensity_difference, std::sqrt(c.weight)});
     }

@@ -22,9 +22,11 @@ namespace splitfusion {
 /// Residual: 1, metres * sqrt(confidence). Zero for any motion within the
 /// tangent plane; unchanged if camera frame, point and plane move together.
 struct PointToPlane {
+  /// Residuals of one point.
   static constexpr int kResiduals = 1;
   Eigen::Vector3d normal;  ///< n_m, camera frame, unit length.
   Eigen::Vector3d target;  ///< v_t, camera frame, metres.
+  /// sqrt(c) of the confidence.
   double sqrt_confidence = 1;
 
   /// `x`: warped point, camera frame, metres.

@@ -94,8 +94,7 @@ MeshRendering RenderMeshes(const SurfaceMap& surfaces,
     first += static_cast<int>(surface->mesh().triangles.size());
   }
   if (first > 0) {
-    rendering.normals =
-        ComputePointMap(rendering.raster.depth, camera).normals;
+    rendering.normals = ComputePointMap(rendering.raster.depth, camera).normals;
   }
   return rendering;
 }
@@ -139,8 +138,8 @@ std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
                  const cv::Vec3f& normal = rendering.normals(v, u);
                  if (normal[2] == 0) return;
                  ModelSample sample;
-                 sample.point = Interpolated(surface.mesh().vertices, triangle,
-                                             weights);
+                 sample.point =
+                     Interpolated(surface.mesh().vertices, triangle, weights);
                  sample.normal = ToEigen(normal);
                  sample.intensity = {grey.fine(v, u), grey.coarse(v, u)};
                  sample.u = u * stride;
@@ -210,22 +209,22 @@ SceneRendering RenderScene(const SurfaceMap& surfaces,
     if (surface->is_ray_cast()) continue;
     const WarpField warp(surface->graph());
     const TriangleMesh& mesh = surface->mesh();
-    ForEachPixel(
-        meshes, *surface,
-        [&, id = id](int v, int u, const Eigen::Vector3i& triangle,
-                     const cv::Vec3f& weights) {
-          const float z = meshes.raster.depth(v, u);
-          const float behind = scene.map.points(v, u)[2];
-          if (behind > 0 && behind < z) return;
-          const int corner = triangle[0];
-          scene.map.points(v, u) = ToCv(camera.BackProject<float>(
-              static_cast<float>(u), static_cast<float>(v), z));
-          scene.map.normals(v, u) = ToCv(
-              warp.WarpNormal(surface->mesh_skinning()[corner],
-                              Interpolated(mesh.normals, triangle, weights)));
-          scene.map.color(v, u) = InterpolatedColor(mesh, triangle, weights);
-          scene.labels(v, u) = static_cast<std::uint16_t>(id);
-        });
+    ForEachPixel(meshes, *surface,
+                 [&, id = id](int v, int u, const Eigen::Vector3i& triangle,
+                              const cv::Vec3f& weights) {
+                   const float z = meshes.raster.depth(v, u);
+                   const float behind = scene.map.points(v, u)[2];
+                   if (behind > 0 && behind < z) return;
+                   const int corner = triangle[0];
+                   scene.map.points(v, u) = ToCv(camera.BackProject<float>(
+                       static_cast<float>(u), static_cast<float>(v), z));
+                   scene.map.normals(v, u) = ToCv(warp.WarpNormal(
+                       surface->mesh_skinning()[corner],
+                       Interpolated(mesh.normals, triangle, weights)));
+                   scene.map.color(v, u) =
+                       InterpolatedColor(mesh, triangle, weights);
+                   scene.labels(v, u) = static_cast<std::uint16_t>(id);
+                 });
   }
   return scene;
 }

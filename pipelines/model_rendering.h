@@ -20,7 +20,9 @@ using SurfaceMap = std::map<int, std::unique_ptr<Surface>>;
 /// All surfaces that are drawn from their meshes, warped and rasterised
 /// together, so that they hide one another.
 struct MeshRendering {
+  /// Camera of the rendering.
   PinholeCamera camera;
+  /// Nearest triangle of every pixel.
   Raster raster;
   /// Camera frame; of a plane fitted to the rendered depth, which averages the
   /// noise of a young model that the TSDF's gradient still has.
@@ -50,7 +52,9 @@ std::vector<ModelSample> RayCastSamples(const Surface& background,
 /// All surfaces re-united in the camera frame (SplitFusion IV-D): what the
 /// camera sees of the model, and the surface id of every pixel.
 struct SceneRendering {
+  /// Points, normals and colour, camera frame.
   ModelMap map;
+  /// Surface id of every pixel, 0 = background or nothing.
   LabelImage labels;
 };
 

@@ -47,8 +47,8 @@ void PipelineOptions::Check() const {
   CheckOption(min_birth_area >= 0 && min_birth_area < 1, "min_birth_area",
               min_birth_area, "a fraction of the image");
   CheckOption(max_lost_young >= 1, "max_lost_young", max_lost_young, ">= 1");
-  CheckOption(min_tracked_pixels >= 1, "min_tracked_pixels",
-              min_tracked_pixels, ">= 1");
+  CheckOption(min_tracked_pixels >= 1, "min_tracked_pixels", min_tracked_pixels,
+              ">= 1");
 }
 
 SplitFusion::SplitFusion(const PinholeCamera& camera,
@@ -102,8 +102,8 @@ void SplitFusion::PredictMotions() {
 void SplitFusion::Split(const Frame& frame, FrameReport* report) {
   Stopwatch stopwatch;
   live_ = MakeLiveView(camera_, frame.depth, frame.color);
-  rendering_ = RenderMeshes(surfaces_,
-                            camera_.Subsampled(options_.render_stride));
+  rendering_ =
+      RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
   report->render_seconds += stopwatch.Restart();
   if (segmenter_ == nullptr || !options_.split_scene) return;
   const std::vector<InstanceMask> detections = segmenter_->Segment(frame);
@@ -183,7 +183,8 @@ void SplitFusion::RestartLostSurfaces(FrameReport* report) {
     on_end = lost.state == "lost" ? on_end + 1 : 0;
     if (lost.id == 0 || on_end < options_.max_lost_young) continue;
     int tracked = 0;
-    for (const FrameMotions& motions : surfaces_.at(lost.id)->history().frames) {
+    for (const FrameMotions& motions :
+         surfaces_.at(lost.id)->history().frames) {
       tracked += motions.tracked;
     }
     if (tracked > options_.max_lost_young) continue;

@@ -18,20 +18,26 @@ namespace splitfusion {
 
 /// Options of the whole method. Every one is a flag of `sf_run`.
 struct PipelineOptions {
+  /// Detections to surfaces.
   SplitOptions split;
+  /// Model of the background.
   SurfaceOptions background;
+  /// Model of every other surface.
   SurfaceOptions object;
+  /// Stages, gates and bounds of tracking.
   TrackerOptions tracker = TrackerOptions::Defaults();
+  /// Minimiser.
   SolverOptions solver;
+  /// Ray casting of the background.
   RayCastOptions ray_cast;
   /// Eq. 4; syntax of ParseEnergy.
   std::string terms =
       "point_to_plane(weight=1,loss=tukey,scale=0.03) "
       "color(weight=8,loss=huber,scale=0.01) arap(weight=8)";
-  int render_stride = 2;  ///< Model maps hold every n-th pixel.
-  bool split_scene = true;      ///< False: one surface holds the whole scene.
-  bool model_objects = true;    ///< False: moving things are only cut out.
-  bool deform_objects = true;   ///< False: moving things are rigid.
+  int render_stride = 2;       ///< Model maps hold every n-th pixel.
+  bool split_scene = true;     ///< False: one surface holds the whole scene.
+  bool model_objects = true;   ///< False: moving things are only cut out.
+  bool deform_objects = true;  ///< False: moving things are rigid.
   bool deform_background = false;  ///< True: surface 0 is non-rigid.
   int min_tracked_pixels = 400;    ///< Fewer live pixels: surface is unseen.
   /// Fraction of the image a surface has to cover before it is modelled.
@@ -63,9 +69,13 @@ class SplitFusion {
   /// Extracts the final meshes of all surfaces.
   void Finish();
 
+  /// All surfaces by id, the background first.
   const SurfaceMap& surfaces() const { return surfaces_; }
+  /// Camera poses so far; the world is the first camera.
   const Trajectory& trajectory() const { return trajectory_; }
+  /// Intrinsics.
   const PinholeCamera& camera() const { return camera_; }
+  /// Options in use.
   const PipelineOptions& options() const { return options_; }
   /// Surface ids of the last frame, HxW.
   const LabelImage& labels() const { return live_.labels; }

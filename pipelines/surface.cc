@@ -136,9 +136,8 @@ void Surface::AllocateUncovered(const LiveView& live) {
       // Eq. 1 of the nearest node, inverted.
       const Eigen::Vector3d offset =
           point.cast<double>() - centers[node].cast<double>();
-      uncovered.push_back(
-          graph_.motions[node].rotation.transpose() * offset +
-          graph_.positions[node]);
+      uncovered.push_back(graph_.motions[node].rotation.transpose() * offset +
+                          graph_.positions[node]);
     }
   }
   AllocateAround(uncovered, options_.tsdf.truncation, &volume_);

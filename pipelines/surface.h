@@ -18,7 +18,9 @@ namespace splitfusion {
 
 /// How one surface is modelled.
 struct SurfaceOptions {
+  /// Voxels and truncation.
   TsdfOptions tsdf;
+  /// Nodes and edges.
   GraphOptions graph;
   /// Observations a voxel needs before it is meshed (weights, about frames at
   /// close range).
@@ -59,27 +61,42 @@ class Surface {
   /// Mesh vertices under the current motions, camera frame.
   std::vector<Eigen::Vector3f> WarpedVertices() const;
 
+  /// Surface id; 0 is the background.
   int id() const { return id_; }
+  /// Class name.
   const std::string& label() const { return label_; }
+  /// Changes the class name.
   void set_label(const std::string& label) { label_ = label; }
+  /// Whether one motion or many carry it.
   SurfaceKind kind() const { return kind_; }
+  /// Frame of its first observation.
   int first_frame() const { return first_frame_; }
   /// Out of view or missed too long: kept, but neither tracked nor drawn.
   bool dormant() const { return dormant_; }
+  /// Sets dormant().
   void set_dormant(bool dormant) { dormant_ = dormant; }
+  /// Whether it is what nothing else is.
   bool is_background() const { return id_ == 0; }
   /// Drawn by ray casting, not from the mesh.
   bool is_ray_cast() const {
     return is_background() && kind_ == SurfaceKind::kRigid;
   }
 
+  /// Options in use.
   const SurfaceOptions& options() const { return options_; }
+  /// Deformation graph at the current motions.
   const DeformationGraph& graph() const { return graph_; }
+  /// The graph, for prediction and tracking.
   DeformationGraph* mutable_graph() { return &graph_; }
+  /// Skinning by the current graph.
   const SkinningIndex& skinning_index() const { return *index_; }
+  /// Its volume, canonical frame.
   const TsdfVolume& volume() const { return volume_; }
+  /// Its mesh, canonical frame; see UpdateMesh().
   const TriangleMesh& mesh() const { return mesh_; }
+  /// Skinning of the mesh's vertices.
   const std::vector<Skinning>& mesh_skinning() const { return mesh_skinning_; }
+  /// Motions of all frames so far.
   const MotionHistory& history() const { return history_; }
 
  private:

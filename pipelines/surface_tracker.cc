@@ -172,16 +172,16 @@ void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
 double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
                               const LiveView& live, std::uint16_t surface,
                               const DeformationGraph& graph) const {
-  const TrackingStage stage = FittedStage(
-      options_.rigid.front(), options_.min_samples / 4, samples);
+  const TrackingStage stage =
+      FittedStage(options_.rigid.front(), options_.min_samples / 4, samples);
   const WarpField warp(graph);
-  const Association association = Associate(samples, warp, live, surface,
-                                            stage.stride, stage.gates);
+  const Association association =
+      Associate(samples, warp, live, surface, stage.stride, stage.gates);
   const AssociationCounts& counts = association.counts;
   // Truncated at 2 cm and at a fifth of the grey range; a sample that fits
   // nowhere counts 1 for each.
-  double sum = 2.0 * (counts.distance + counts.normal_angle +
-                      counts.other_surface);
+  double sum =
+      2.0 * (counts.distance + counts.normal_angle + counts.other_surface);
   for (const Correspondence& c : association.correspondences) {
     const double distance =
         c.warped_normal.dot(warp.WarpPoint(c.model.skinning, c.model.point) -
@@ -264,15 +264,16 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   round.stage = name;
   round.stride = stage.stride;
   round.prior_factor = prior_factor;
-  const Association association = Associate(
-      samples, WarpField(*graph), live, surface, stage.stride, stage.gates);
+  const Association association = Associate(samples, WarpField(*graph), live,
+                                            surface, stage.stride, stage.gates);
   round.association = association.counts;
   report->associate_seconds += stopwatch.Restart();
   bool settled = true;
   if (!association.correspondences.empty()) {
-    round.solver = Minimize(
-        {energy_, association.correspondences, live.camera,
-         prior_factor * MeanConfidence(association.correspondences)}, solver_, graph);
+    round.solver =
+        Minimize({energy_, association.correspondences, live.camera,
+                  prior_factor * MeanConfidence(association.correspondences)},
+                 solver_, graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||
               round.solver.initial_cost - round.solver.final_cost <
@@ -292,8 +293,8 @@ std::string SurfaceTracker::ReasonForLoss(const Rigid3d& motion,
     return "only " + std::to_string(counts.accepted) +
            " correspondences at stride " + std::to_string(last.stride);
   }
-  const int comparable = counts.accepted + counts.distance +
-                         counts.normal_angle;
+  const int comparable =
+      counts.accepted + counts.distance + counts.normal_angle;
   if (counts.accepted < options_.min_accepted * comparable) {
     return "only " + std::to_string(counts.accepted) + " of " +
            std::to_string(comparable) + " model points fit the depth";

@@ -16,6 +16,7 @@ namespace splitfusion {
 struct TrackingStage {
   int stride = 4;  ///< Every stride-th pixel.
   int rounds = 4;  ///< At most; ends earlier when the cost settles.
+  /// Rejection of correspondences.
   AssociationGates gates;
 };
 
@@ -56,13 +57,14 @@ struct TrackerOptions {
 /// stiff to soft; coarse to fine over the image resolution.
 class SurfaceTracker {
  public:
+  /// @throw InputError if an option is out of its range.
   SurfaceTracker(TrackerOptions options, SolverOptions solver, Energy energy);
 
   /// Moves the graph, which comes in at the predicted motions, so that the
-  /// samples lie on the live pixels of `surface`. `still` is the rigid motion of
-  /// the camera frame that takes the prediction back to where the surface was:
-  /// tracking starts there unless the prediction fits clearly better, so that
-  /// a motion which the data do not determine does not carry itself on. If
+  /// samples lie on the live pixels of `surface`. `still` is the rigid motion
+  /// of the camera frame that takes the prediction back to where the surface
+  /// was: tracking starts there unless the prediction fits clearly better, so
+  /// that a motion which the data do not determine does not carry itself on. If
   /// tracking fails, an object is
   /// tried again from where its live pixels are. A frame that fails leaves the
   /// graph as it came; the report's state is then "lost" and says why.

@@ -21,8 +21,7 @@ DEFINE_double(min_depth, 0.4, "Metres; nearer depth is dropped.");
 DEFINE_double(max_depth, 5.0, "Metres; farther depth is dropped.");
 DEFINE_double(min_score, 0.4, "Detections below are ignored.");
 DEFINE_bool(rigid_objects, false, "Rigid classes get surfaces of their own.");
-DEFINE_string(terms,
-              splitfusion::PipelineOptions().terms,
+DEFINE_string(terms, splitfusion::PipelineOptions().terms,
               "The energy: NAME(weight=,loss=,scale=) ...");
 DEFINE_double(prior_anneal, 8, "First factor on the priors' weights.");
 DEFINE_string(solver, "gn_pcg", "gn_pcg (block Gauss-Newton) or ceres.");

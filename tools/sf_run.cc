@@ -49,8 +49,7 @@ std::shared_ptr<Segmenter> MakeSegmenter() {
   CheckOption(FLAGS_mask_kind == "rigid" || FLAGS_mask_kind == "non_rigid",
               "--mask_kind", FLAGS_mask_kind, "rigid or non_rigid");
   return std::make_shared<MaskFolderSegmenter>(
-      folder,
-      FLAGS_mask_kind == "rigid" ? kUnnamedRigidClass : kUnnamedClass);
+      folder, FLAGS_mask_kind == "rigid" ? kUnnamedRigidClass : kUnnamedClass);
 }
 
 /// One run: frames in, run directory out.
@@ -84,15 +83,15 @@ class Run {
   /// The intrinsics in use, so that the run can be evaluated by itself.
   void WriteCalibration() const {
     const Calibration& used = reader_.calibration();
-    WriteFileAtomically(
-        directory_.paths().Calibration(), [&](std::ostream& out) {
-          out << std::setprecision(17)
-              << "# fx fy cx cy width height depth_factor\n"
-              << used.camera.fx << ' ' << used.camera.fy << ' '
-              << used.camera.cx << ' ' << used.camera.cy << ' '
-              << used.camera.width << ' ' << used.camera.height << ' '
-              << used.depth_scale << '\n';
-        });
+    WriteFileAtomically(directory_.paths().Calibration(),
+                        [&](std::ostream& out) {
+                          out << std::setprecision(17)
+                              << "# fx fy cx cy width height depth_factor\n"
+                              << used.camera.fx << ' ' << used.camera.fy << ' '
+                              << used.camera.cx << ' ' << used.camera.cy << ' '
+                              << used.camera.width << ' ' << used.camera.height
+                              << ' ' << used.depth_scale << '\n';
+                        });
   }
 
   bool ProcessNext() {
@@ -122,9 +121,8 @@ class Run {
       WriteMask(directory_.paths(), frame.stem, fusion_.labels());
     }
     if (FLAGS_pictures_every <= 0 || index % FLAGS_pictures_every != 0) return;
-    const SceneRendering scene =
-        RenderScene(fusion_.surfaces(), fusion_.camera(),
-                    fusion_.options().ray_cast);
+    const SceneRendering scene = RenderScene(
+        fusion_.surfaces(), fusion_.camera(), fusion_.options().ray_cast);
     cv::Mat depth;
     cv::extractChannel(scene.map.points, depth, 2);
     WriteFramePictures(directory_.paths(), index,

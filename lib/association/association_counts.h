@@ -7,14 +7,15 @@ namespace splitfusion {
 /// point is counted exactly once below `model_points`.
 struct AssociationCounts {
   int model_points = 0;  ///< Visible model samples.
+  /// Became correspondences.
   int accepted = 0;
-  int outside_image = 0;   ///< Projects outside the live image.
-  int no_depth = 0;        ///< No live depth or normal at the pixel.
-  int other_surface = 0;   ///< The live pixel belongs to another surface.
-  int depth_edge = 0;      ///< The live pixel lies on a depth discontinuity.
-  int distance = 0;        ///< Farther apart than the gate.
-  int normal_angle = 0;    ///< Normals differ by more than the gate.
-  int grazing = 0;         ///< Live surface seen at too flat an angle.
+  int outside_image = 0;  ///< Projects outside the live image.
+  int no_depth = 0;       ///< No live depth or normal at the pixel.
+  int other_surface = 0;  ///< The live pixel belongs to another surface.
+  int depth_edge = 0;     ///< The live pixel lies on a depth discontinuity.
+  int distance = 0;       ///< Farther apart than the gate.
+  int normal_angle = 0;   ///< Normals differ by more than the gate.
+  int grazing = 0;        ///< Live surface seen at too flat an angle.
 };
 
 }  // namespace splitfusion

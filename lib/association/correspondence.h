@@ -15,13 +15,14 @@ struct ModelSample {
   Eigen::Vector3f normal;  ///< Canonical, unit length, outward.
   /// Grey value of the model's colour, 0..1: fine and coarse, see LiveView.
   std::array<float, 2> intensity{};
-  int u = 0;               ///< Column of the full image it was rendered at.
-  int v = 0;               ///< Row of the full image it was rendered at.
-  Skinning skinning;       ///< Nodes that carry it.
+  int u = 0;          ///< Column of the full image it was rendered at.
+  int v = 0;          ///< Row of the full image it was rendered at.
+  Skinning skinning;  ///< Nodes that carry it.
 };
 
 /// A model point and the live point it should come to lie on.
 struct Correspondence {
+  /// The model point, canonical, with its skinning.
   ModelSample model;
   Eigen::Vector3f warped_normal;  ///< Model normal under the current warp.
   Eigen::Vector3f target;         ///< Live point, camera frame, metres.

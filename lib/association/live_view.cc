@@ -108,7 +108,8 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
   view.depth = WithoutPinholes(depth, focal_length);
   view.map = ComputePointMap(view.depth, camera);
   view.color = color;
-  for (int k = 0; k < 2; ++k) view.grey[k] = MakeGreyLevel(color, kGreySigma[k]);
+  for (int k = 0; k < 2; ++k)
+    view.grey[k] = MakeGreyLevel(color, kGreySigma[k]);
   view.edges = DepthEdges(view.depth, focal_length);
   view.labels.create(depth.size());
   view.labels.setTo(0);
@@ -121,9 +122,9 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
       const cv::Vec3f& n = view.map.normals(v, u);
       const float length = std::sqrt(p.dot(p));
       view.confidence(v, u) =
-          length > 0 ? DepthConfidence(p[2]) *
-                           std::max(0.0f, -p.dot(n) / length)
-                     : 0.0f;
+          length > 0
+              ? DepthConfidence(p[2]) * std::max(0.0f, -p.dot(n) / length)
+              : 0.0f;
     }
   });
   return view;

@@ -22,15 +22,16 @@ constexpr double kGreySigma[2] = {1.2, 4.0};
 
 /// The live frame as association and fusion see it; all images HxW.
 struct LiveView {
+  /// Intrinsics of all images.
   PinholeCamera camera;
-  PointMap map;                   ///< Points and normals, camera frame.
-  cv::Mat color;                  ///< 8UC3, BGR.
-  std::array<GreyLevel, 2> grey;  ///< Fine and coarse.
-  cv::Mat_<float> depth;          ///< Metres, 0 = none; pinholes filled.
-  cv::Mat_<float> confidence;     ///< (sigma_0 / sigma(z))^2 at most 1, times
-                                  ///< the cosine of the viewing angle.
-  cv::Mat_<std::uint8_t> edges;   ///< 255 within 2 px of a depth edge.
-  cv::Mat_<std::uint16_t> labels; ///< Surface id of every pixel.
+  PointMap map;                    ///< Points and normals, camera frame.
+  cv::Mat color;                   ///< 8UC3, BGR.
+  std::array<GreyLevel, 2> grey;   ///< Fine and coarse.
+  cv::Mat_<float> depth;           ///< Metres, 0 = none; pinholes filled.
+  cv::Mat_<float> confidence;      ///< (sigma_0 / sigma(z))^2 at most 1, times
+                                   ///< the cosine of the viewing angle.
+  cv::Mat_<std::uint8_t> edges;    ///< 255 within 2 px of a depth edge.
+  cv::Mat_<std::uint16_t> labels;  ///< Surface id of every pixel.
   cv::Mat_<std::uint8_t> uncertain;  ///< 255: belongs to no surface for sure.
 };
 

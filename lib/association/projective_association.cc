@@ -79,10 +79,9 @@ class Associator {
     out->intensity_gradient = Eigen::Vector2f(gradient[0], gradient[1]);
     // First-order to the place between the pixels.
     const float live_intensity =
-        grey.value(v, u) +
-        out->intensity_gradient.dot(
-            pixel - Eigen::Vector2f(static_cast<float>(u),
-                                    static_cast<float>(v)));
+        grey.value(v, u) + out->intensity_gradient.dot(
+                               pixel - Eigen::Vector2f(static_cast<float>(u),
+                                                       static_cast<float>(v)));
     out->intensity_difference = live_intensity - sample.intensity[color_level_];
     out->weight = DepthConfidence(out->target.z());
     return Outcome::kAccepted;
@@ -112,14 +111,30 @@ void RemoveCommonBrightness(std::vector<Correspondence>* correspondences) {
 void Count(Outcome outcome, AssociationCounts* counts) {
   ++counts->model_points;
   switch (outcome) {
-    case Outcome::kAccepted: ++counts->accepted; break;
-    case Outcome::kOutsideImage: ++counts->outside_image; break;
-    case Outcome::kNoDepth: ++counts->no_depth; break;
-    case Outcome::kOtherSurface: ++counts->other_surface; break;
-    case Outcome::kDepthEdge: ++counts->depth_edge; break;
-    case Outcome::kDistance: ++counts->distance; break;
-    case Outcome::kNormalAngle: ++counts->normal_angle; break;
-    case Outcome::kGrazing: ++counts->grazing; break;
+    case Outcome::kAccepted:
+      ++counts->accepted;
+      break;
+    case Outcome::kOutsideImage:
+      ++counts->outside_image;
+      break;
+    case Outcome::kNoDepth:
+      ++counts->no_depth;
+      break;
+    case Outcome::kOtherSurface:
+      ++counts->other_surface;
+      break;
+    case Outcome::kDepthEdge:
+      ++counts->depth_edge;
+      break;
+    case Outcome::kDistance:
+      ++counts->distance;
+      break;
+    case Outcome::kNormalAngle:
+      ++counts->normal_angle;
+      break;
+    case Outcome::kGrazing:
+      ++counts->grazing;
+      break;
   }
 }
 

@@ -24,6 +24,7 @@ struct AssociationGates {
 /// Result of one association.
 struct Association {
   std::vector<Correspondence> correspondences;  ///< In order of the samples.
+  /// What became of every sample.
   AssociationCounts counts;
 };
 

@@ -18,9 +18,9 @@ void WritePathAtomically(const std::string& path,
     fs::create_directories(target.parent_path(), error);
   }
   const fs::path temporary =
-      target.parent_path() / ("." + target.stem().string() + ".tmp" +
-                              std::to_string(getpid()) +
-                              target.extension().string());
+      target.parent_path() /
+      ("." + target.stem().string() + ".tmp" + std::to_string(getpid()) +
+       target.extension().string());
   try {
     write(temporary.string());
   } catch (...) {
@@ -42,7 +42,8 @@ void WriteFileAtomically(const std::string& path,
     if (stream) write(stream);
     stream.close();
     if (!stream) {
-      throw InputError(path + ": cannot be written (folder missing, not "
+      throw InputError(path +
+                       ": cannot be written (folder missing, not "
                        "writable or disk full)");
     }
   });

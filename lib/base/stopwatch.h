@@ -8,6 +8,7 @@ namespace splitfusion {
 /// Wall-clock time since construction or the last Restart(), in seconds.
 class Stopwatch {
  public:
+  /// Seconds since construction or the last Restart().
   double Seconds() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
   }

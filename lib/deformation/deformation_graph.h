@@ -11,8 +11,8 @@ namespace splitfusion {
 /// Motion of one graph node (SplitFusion Eq. 1): p~ = R (p - g) + t + g maps a
 /// canonical point p into the camera frame; metres.
 struct NodeMotion {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();     ///< R_i
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();      ///< t_i
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< R_i
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< t_i
 };
 
 /// The embedded deformation graph of one surface (SplitFusion IV-B).
@@ -27,7 +27,9 @@ struct DeformationGraph {
   std::vector<std::vector<int>> neighbors;
   double node_spacing = 0;  ///< Metres; 0 for a rigid surface.
 
+  /// Number of nodes.
   int size() const { return static_cast<int>(positions.size()); }
+  /// Whether one motion carries the whole surface.
   bool rigid() const { return positions.size() == 1; }
 };
 

@@ -57,15 +57,15 @@ void CloseNear(const TriangleMesh& mesh, const DeformationGraph& graph,
     nodes.push_back(g.cast<float>());
   }
   const KdTree tree(nodes);
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, open->size(), 2048),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          float distance = 0;
-          tree.Nearest(mesh.vertices[i], &distance);
-          if (distance < spacing) (*open)[i] = false;
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, open->size(), 2048),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end();
+                           ++i) {
+                        float distance = 0;
+                        tree.Nearest(mesh.vertices[i], &distance);
+                        if (distance < spacing) (*open)[i] = false;
+                      }
+                    });
 }
 
 /// Vertices that keep `spacing` from the nodes and from one another, greedily
@@ -105,10 +105,10 @@ void BlendNewMotions(const SkinningIndex& index, const DeformationGraph& old,
 }  // namespace
 
 void GraphOptions::Check() const {
-  CheckOption(neighbors_per_point >= 1 &&
-                  neighbors_per_point <= kMaxSkinningNodes,
-              "neighbors_per_point", neighbors_per_point,
-              "1.." + std::to_string(kMaxSkinningNodes));
+  CheckOption(
+      neighbors_per_point >= 1 && neighbors_per_point <= kMaxSkinningNodes,
+      "neighbors_per_point", neighbors_per_point,
+      "1.." + std::to_string(kMaxSkinningNodes));
   CheckOption(neighbors_per_node >= 1 && neighbors_per_node <= 64,
               "neighbors_per_node", neighbors_per_node, "1..64");
   CheckOption(near_spacing >= 0.002, "near_spacing", near_spacing,
@@ -122,9 +122,9 @@ void GraphOptions::Check() const {
 }
 
 double NodeSpacing(const GraphOptions& options, double depth) {
-  const double t = std::clamp((depth - options.near_depth) /
-                                  (options.far_depth - options.near_depth),
-                              0.0, 1.0);
+  const double t = std::clamp(
+      (depth - options.near_depth) / (options.far_depth - options.near_depth),
+      0.0, 1.0);
   return options.near_spacing +
          t * (options.far_spacing - options.near_spacing);
 }

@@ -14,6 +14,7 @@ struct GraphOptions {
   /// Node spacing for surfaces near the camera and farther away, metres; in
   /// between linear in the depth at birth.
   double near_spacing = 0.025;
+  /// Node spacing from `far_depth` on, metres.
   double far_spacing = 0.040;
   double near_depth = 0.7;  ///< Metres; up to here `near_spacing`.
   double far_depth = 1.5;   ///< Metres; from here `far_spacing`.

@@ -28,8 +28,8 @@ struct MotionHistory {
 };
 
 /// Writes `motions.bin`, little endian: 8 bytes "SFMOTN01", uint32 frames F,
-/// uint32 nodes N, then per frame int32 frame index, int32 tracked (0 or 1), and
-/// N x 12 float32 (R row by row, then t).
+/// uint32 nodes N, then per frame int32 frame index, int32 tracked (0 or 1),
+/// and N x 12 float32 (R row by row, then t).
 ///
 /// @throw InputError if the file cannot be written.
 void WriteMotions(const std::string& path, const MotionHistory& history);

@@ -25,9 +25,8 @@ void KeepNearest(const DeformationGraph& graph, int node,
   const auto distance = [&](int i) {
     return (graph.positions[i] - graph.positions[node]).squaredNorm();
   };
-  std::stable_sort(
-      candidates->begin(), candidates->end(),
-      [&](int a, int b) { return distance(a) < distance(b); });
+  std::stable_sort(candidates->begin(), candidates->end(),
+                   [&](int a, int b) { return distance(a) < distance(b); });
   candidates->resize(kMaxCandidates);
   std::sort(candidates->begin(), candidates->end());
 }

@@ -15,7 +15,7 @@ namespace {
 
 /// Vertex adjacency of a mesh in compressed rows.
 struct MeshGraph {
-  std::vector<int> begin;   // Per vertex, into `to`.
+  std::vector<int> begin;  // Per vertex, into `to`.
   std::vector<int> to;
 };
 
@@ -54,8 +54,7 @@ Regions GrowRegions(const std::vector<Eigen::Vector3d>& nodes,
   const KdTree vertex_tree(mesh.vertices);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     float distance = 0;
-    const int vertex =
-        vertex_tree.Nearest(nodes[i].cast<float>(), &distance);
+    const int vertex = vertex_tree.Nearest(nodes[i].cast<float>(), &distance);
     if (distance >= regions.distance[vertex]) continue;
     regions.distance[vertex] = distance;
     regions.node[vertex] = static_cast<int>(i);

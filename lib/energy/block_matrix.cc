@@ -58,12 +58,13 @@ CgResult SolveByPcg(const SymmetricBlockMatrix& a,
   const std::size_t n = b.size();
   std::vector<Block6> inverse(n);
   for (std::size_t i = 0; i < n; ++i) {
-    inverse[i] = a.Diagonal(static_cast<int>(i)).ldlt().solve(
-        Block6::Identity());
+    inverse[i] =
+        a.Diagonal(static_cast<int>(i)).ldlt().solve(Block6::Identity());
   }
   const auto precondition = [&](const std::vector<Vector6>& in,
                                 std::vector<Vector6>* out) {
-    for (std::size_t i = 0; i < n; ++i) (*out)[i].noalias() = inverse[i] * in[i];
+    for (std::size_t i = 0; i < n; ++i)
+      (*out)[i].noalias() = inverse[i] * in[i];
   };
   x->assign(n, Vector6::Zero());
   std::vector<Vector6> residual = b, z(n), direction(n), product(n);

@@ -9,6 +9,7 @@ namespace splitfusion {
 
 /// A 6x6 block and a 6-vector: one node's share of the normal equations.
 using Block6 = Eigen::Matrix<double, 6, 6>;
+/// A node's share of a vector over all twists.
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 /// Symmetric positive semi-definite matrix of 6x6 blocks; the upper triangle is
@@ -32,6 +33,7 @@ class SymmetricBlockMatrix {
 
   /// Diagonal block of a row.
   const Block6& Diagonal(int row) const { return blocks_[row_begin_[row]]; }
+  /// Diagonal block of a row, to be changed.
   Block6& Diagonal(int row) { return blocks_[row_begin_[row]]; }
 
   /// y = A x.
@@ -45,6 +47,7 @@ class SymmetricBlockMatrix {
 
 /// Outcome of a conjugate gradient solution.
 struct CgResult {
+  /// Products with A.
   int iterations = 0;
   double relative_residual = 0;  ///< |b - A x| / |b|
 };

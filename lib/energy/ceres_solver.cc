@@ -155,18 +155,17 @@ void SolverOptions::Check() const {
   CheckOption(solver == "ceres" || solver == "gn_pcg", "solver", solver,
               "ceres or gn_pcg");
   ceres::LinearSolverType solver;
-  CheckOption(linear_solver == "auto" ||
-                  (ceres::StringToLinearSolverType(Upper(linear_solver),
-                                                   &solver) &&
-                   linear_solver.find("schur") == std::string::npos),
-              "linear_solver", linear_solver,
-              "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
-              "or cgnr");
+  CheckOption(
+      linear_solver == "auto" ||
+          (ceres::StringToLinearSolverType(Upper(linear_solver), &solver) &&
+           linear_solver.find("schur") == std::string::npos),
+      "linear_solver", linear_solver,
+      "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
+      "or cgnr");
   CheckOption(preconditioner == "jacobi" || preconditioner == "identity",
               "preconditioner", preconditioner, "jacobi or identity");
-  CheckOption(
-      trust_region == "levenberg_marquardt" || trust_region == "dogleg",
-      "trust_region", trust_region, "levenberg_marquardt or dogleg");
+  CheckOption(trust_region == "levenberg_marquardt" || trust_region == "dogleg",
+              "trust_region", trust_region, "levenberg_marquardt or dogleg");
   CheckOption(trust_region != "dogleg" || linear_solver != "cgnr",
               "trust_region", trust_region,
               "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
@@ -176,10 +175,10 @@ void SolverOptions::Check() const {
   CheckOption(max_linear_solver_iterations >= 1, "max_linear_solver_iterations",
               max_linear_solver_iterations, ">= 1");
   CheckOption(eta > 0 && eta < 1, "eta", eta, "between 0 and 1");
-  CheckOption(function_tolerance >= 0, "function_tolerance",
-              function_tolerance, ">= 0");
-  CheckOption(gradient_tolerance >= 0, "gradient_tolerance",
-              gradient_tolerance, ">= 0");
+  CheckOption(function_tolerance >= 0, "function_tolerance", function_tolerance,
+              ">= 0");
+  CheckOption(gradient_tolerance >= 0, "gradient_tolerance", gradient_tolerance,
+              ">= 0");
   CheckOption(parameter_tolerance >= 0, "parameter_tolerance",
               parameter_tolerance, ">= 0");
   CheckOption(initial_radius > 0, "initial_radius", initial_radius, "> 0");

@@ -15,6 +15,7 @@ namespace splitfusion {
 /// What a term may look at: one surface at one association.
 struct EnergyInput {
   const DeformationGraph& graph;  ///< Motions are the linearisation point.
+  /// Pairs of model and live points of the surface.
   const std::vector<Correspondence>& correspondences;
   const PinholeCamera& camera;  ///< Live camera.
 };

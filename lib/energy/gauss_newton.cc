@@ -49,13 +49,13 @@ class BlockProblem {
 
   /// Evaluates all blocks; false if a value is not finite.
   bool Evaluate(const std::vector<double>& twists, bool with_jacobians) {
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, blocks_.size(), 64),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            EvaluateBlock(twists, with_jacobians, &blocks_[i]);
-          }
-        });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_.size(), 64),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i < range.end();
+                             ++i) {
+                          EvaluateBlock(twists, with_jacobians, &blocks_[i]);
+                        }
+                      });
     return std::isfinite(Cost());
   }
 
@@ -89,8 +89,7 @@ class BlockProblem {
   void Assemble(SymmetricBlockMatrix* matrix,
                 std::vector<Vector6>* gradient) const {
     std::vector<std::vector<Block6>> blocks(
-        kParts,
-        std::vector<Block6>(matrix->block_count(), Block6::Zero()));
+        kParts, std::vector<Block6>(matrix->block_count(), Block6::Zero()));
     std::vector<std::vector<Vector6>> gradients(
         kParts, std::vector<Vector6>(nodes_, Vector6::Zero()));
     tbb::parallel_for(0, kParts, [&](int part) {
@@ -180,7 +179,8 @@ void Damp(double radius, SymmetricBlockMatrix* matrix) {
 
 double MaxNorm(const std::vector<Vector6>& values) {
   double norm = 0;
-  for (const Vector6& v : values) norm = std::max(norm, v.cwiseAbs().maxCoeff());
+  for (const Vector6& v : values)
+    norm = std::max(norm, v.cwiseAbs().maxCoeff());
   return norm;
 }
 

@@ -23,15 +23,19 @@ constexpr double kResidualUnit = 0.01;  // Metres.
 
 /// Weight and loss of one term, as the command line gives them.
 struct TermOptions {
+  /// Registered name of the term.
   std::string name;
   double weight = 1;  ///< Of E_term; dimensionless.
+  /// Robust loss of every residual vector.
   LossKind loss = LossKind::kTrivial;
   double scale = 0.01;  ///< Inlier width of the loss, metres.
 };
 
 /// One block of residuals over some nodes' twists.
 struct ResidualBlock {
+  /// Residuals and Jacobians over the nodes' twists.
   std::unique_ptr<ceres::CostFunction> cost;
+  /// Nodes of the parameter blocks, in order.
   std::vector<int> nodes;
   /// Loss that Ceres applies to the block; null if the block has applied it.
   std::shared_ptr<ceres::LossFunction> loss;
@@ -91,7 +95,9 @@ inline std::vector<int> OrderByNodes(
     const std::vector<const ModelSample*>& samples) {
   std::vector<int> order(samples.size());
   std::iota(order.begin(), order.end(), 0);
-  const auto nodes_of = [&](int i) { return samples[i]->skinning.nodes.data(); };
+  const auto nodes_of = [&](int i) {
+    return samples[i]->skinning.nodes.data();
+  };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return std::lexicographical_compare(
         nodes_of(a), nodes_of(a) + samples[a]->skinning.count, nodes_of(b),

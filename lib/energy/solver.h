@@ -28,8 +28,11 @@ struct SolverOptions {
   int max_iterations = 2;  ///< Per association.
   int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.
   double eta = 0.01;  ///< For cgnr and gn_pcg: relative accuracy of a step.
+  /// Converged when the cost changes by less, relative.
   double function_tolerance = 1e-5;
+  /// Converged when the gradient's largest entry is below.
   double gradient_tolerance = 1e-10;
+  /// Converged when the step is below (radians, metres).
   double parameter_tolerance = 1e-8;
   double initial_radius = 1e4;  ///< Of the trust region.
   bool full_report = false;     ///< Keep Ceres' FullReport() text.
@@ -40,10 +43,12 @@ struct SolverOptions {
 
 /// The problem of one surface at one association.
 struct SurfaceProblem {
+  /// The weighted terms, Eq. 4.
   const Energy& energy;
+  /// Pairs of model and live points of the surface.
   const std::vector<Correspondence>& correspondences;
   const PinholeCamera& camera;  ///< Live camera.
-  double prior_factor = 1;  ///< Annealing: multiplies the priors' weights.
+  double prior_factor = 1;      ///< Annealing: multiplies the priors' weights.
 };
 
 /// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7) and

@@ -8,22 +8,34 @@ namespace splitfusion {
 
 /// Cost of one energy term: weight * (1/N) * sum of rho(|r|^2 / s^2).
 struct TermCost {
+  /// Registered name of the term.
   std::string term;
   int residual_vectors = 0;  ///< N of the normalisation.
+  /// Before the minimisation.
   double initial = 0;
+  /// After it.
   double final = 0;
 };
 
 /// One iteration of the minimiser, as Ceres' IterationSummary has it.
 struct SolverIteration {
+  /// 0 is the start.
   int iteration = 0;
+  /// Whether the step was taken.
   bool accepted = true;
+  /// Cost after the iteration.
   double cost = 0;
+  /// Decrease of the cost by the step.
   double cost_change = 0;
+  /// Largest entry of the gradient.
   double gradient_max_norm = 0;
+  /// Length of the step (radians, metres).
   double step_norm = 0;
+  /// Radius that the damping stands for.
   double trust_region_radius = 0;
+  /// Conjugate gradient iterations; 1 for a factorisation.
   int linear_solver_iterations = 0;
+  /// Wall-clock time.
   double seconds = 0;
 };
 
@@ -31,15 +43,25 @@ struct SolverIteration {
 struct SolverReport {
   bool usable = false;      ///< The graph holds the solution.
   std::string termination;  ///< "CONVERGENCE", "NO_CONVERGENCE", "FAILURE".
+  /// The solver's words on why it ended.
   std::string message;
+  /// Energy before.
   double initial_cost = 0;
+  /// Energy after.
   double final_cost = 0;
+  /// Number of unknowns.
   int parameters = 0;
+  /// Number of scalar residuals.
   int residuals = 0;
+  /// Time in residuals with Jacobians.
   double jacobian_seconds = 0;
+  /// Time in the linear solver.
   double linear_solver_seconds = 0;
+  /// Wall-clock time of the whole call.
   double total_seconds = 0;
+  /// Costs by term, in order of the energy.
   std::vector<TermCost> terms;
+  /// All iterations, the start first.
   std::vector<SolverIteration> iterations;
   std::string full_report;  ///< Ceres' FullReport(), on request.
 };

@@ -10,6 +10,7 @@ namespace splitfusion {
 /// The residual blocks of one term of a problem.
 struct TermBlocks {
   TermCost cost;  ///< Name and number of residual vectors; no costs yet.
+  /// Its residuals.
   std::vector<ResidualBlock> blocks;
 };
 

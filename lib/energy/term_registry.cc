@@ -56,8 +56,8 @@ std::string Trimmed(const std::string& text) {
 void ParseArguments(const std::string& arguments, TermOptions* options) {
   std::size_t begin = 0;
   while (begin < arguments.size()) {
-    const std::size_t end = std::min(arguments.find(',', begin),
-                                     arguments.size());
+    const std::size_t end =
+        std::min(arguments.find(',', begin), arguments.size());
     const std::string pair = Trimmed(arguments.substr(begin, end - begin));
     const std::size_t equals = pair.find('=');
     if (equals == std::string::npos) {

@@ -14,6 +14,7 @@ namespace splitfusion {
 /// Terms by name. A plain value: make one, register terms, pass it on.
 class TermRegistry {
  public:
+  /// Makes a term.
   using Factory = std::function<std::unique_ptr<EnergyTerm>()>;
 
   /// @throw InputError if the name is taken.
@@ -31,7 +32,9 @@ class TermRegistry {
 
 /// A term with its options.
 struct WeightedTerm {
+  /// Name, weight and loss.
   TermOptions options;
+  /// The term itself.
   std::shared_ptr<const EnergyTerm> term;
 };
 

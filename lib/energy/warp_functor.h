@@ -50,9 +50,8 @@ class WarpFunctor {
               const Eigen::Vector3f& point, PointFunctor functor)
       : count_(skinning.count), functor_(std::move(functor)) {
     for (int k = 0; k < count_; ++k) {
-      transports_[k] =
-          MakeTransport(graph, skinning.nodes[k], skinning.weights[k],
-                        point.cast<double>());
+      transports_[k] = MakeTransport(graph, skinning.nodes[k],
+                                     skinning.weights[k], point.cast<double>());
     }
   }
 
@@ -67,8 +66,8 @@ class WarpFunctor {
       T moved[3];
       ceres::AngleAxisRotatePoint(twists[k], rotated, moved);
       for (int d = 0; d < 3; ++d) {
-        warped[d] += T(node.weight) *
-                     (moved[d] + T(node.center[d]) + twists[k][3 + d]);
+        warped[d] +=
+            T(node.weight) * (moved[d] + T(node.center[d]) + twists[k][3 + d]);
       }
     }
     return functor_(warped, residuals);

@@ -34,6 +34,7 @@ namespace splitfusion {
 template <typename PointFunctor>
 class WarpedPointGroup : public ceres::CostFunction {
  public:
+  /// Residuals of one point.
   static constexpr int kDims = PointFunctor::kResiduals;
 
   /// `nodes`: the common node set. `residual_scale` multiplies residuals before
@@ -57,9 +58,8 @@ class WarpedPointGroup : public ceres::CostFunction {
   void Add(const DeformationGraph& graph, const Skinning& skinning,
            const Eigen::Vector3f& point, PointFunctor functor) {
     for (int k = 0; k < skinning.count; ++k) {
-      const NodeTransport transport =
-          MakeTransport(graph, skinning.nodes[k], skinning.weights[k],
-                        point.cast<double>());
+      const NodeTransport transport = MakeTransport(
+          graph, skinning.nodes[k], skinning.weights[k], point.cast<double>());
       rotated_.push_back(transport.rotated);
       weights_.push_back(transport.weight);
     }
@@ -67,9 +67,12 @@ class WarpedPointGroup : public ceres::CostFunction {
     set_num_residuals(kDims * size() + 1);
   }
 
+  /// Number of points.
   int size() const { return static_cast<int>(functors_.size()); }
+  /// Nodes of the parameter blocks, in order.
   const std::vector<int>& nodes() const { return nodes_; }
 
+  /// Ceres' interface: kDims rows a point, and the one that holds the rest.
   bool Evaluate(double const* const* twists, double* residuals,
                 double** jacobians) const override {
     std::array<NodeRotation, kMaxSkinningNodes> rotations;
@@ -115,9 +118,10 @@ class WarpedPointGroup : public ceres::CostFunction {
     return rotation;
   }
 
-  bool EvaluatePoint(int i, double const* const* twists,
-                     const std::array<NodeRotation, kMaxSkinningNodes>& rotation,
-                     double* residual, double** jacobians, double* rest) const {
+  bool EvaluatePoint(
+      int i, double const* const* twists,
+      const std::array<NodeRotation, kMaxSkinningNodes>& rotation,
+      double* residual, double** jacobians, double* rest) const {
     const int nodes = static_cast<int>(nodes_.size());
     const Eigen::Vector3d* rotated = &rotated_[i * nodes];
     const double* weights = &weights_[i * nodes];

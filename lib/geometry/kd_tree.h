@@ -14,7 +14,9 @@ class KdTree {
   /// Copies the points (metres); there must be at least one.
   explicit KdTree(const std::vector<Eigen::Vector3f>& points);
   ~KdTree();
+  /// Takes the tree over.
   KdTree(KdTree&&) noexcept;
+  /// Takes the tree over.
   KdTree& operator=(KdTree&&) noexcept;
 
   /// Index of the nearest point; `distance` (metres) may be null.

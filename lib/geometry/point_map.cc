@@ -69,10 +69,9 @@ class NormalEstimator {
   cv::Vec3f Normal(int u, int v, float z) const {
     const int radius = options_.normal_radius;
     // Below z, so that pixels without depth never pass.
-    const float gate =
-        std::min(0.9f * z, static_cast<float>(options_.edge_factor *
-                                                  DepthSigma(z) +
-                                              options_.edge_offset));
+    const float gate = std::min(
+        0.9f * z, static_cast<float>(options_.edge_factor * DepthSigma(z) +
+                                     options_.edge_offset));
     InverseDepthPlane plane;
     const int v_end = std::min(v + radius, depth_.rows - 1);
     const int u_begin = std::max(u - radius, 0);

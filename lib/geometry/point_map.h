@@ -21,6 +21,7 @@ struct PointMapOptions {
   /// Neighbours whose depth differs from the centre by more than
   /// `edge_factor` x sigma(z) + `edge_offset` (metres) do not count.
   double edge_factor = 4.0;
+  /// Metres, see edge_factor.
   double edge_offset = 0.004;
 
   /// @throw InputError if a value is out of its range.

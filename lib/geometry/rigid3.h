@@ -8,6 +8,7 @@ namespace splitfusion {
 
 /// Rigid motion; `b_from_a` maps points of frame a into frame b. Metres.
 using Rigid3d = Eigen::Isometry3d;
+/// The same in single precision, for images and grids.
 using Rigid3f = Eigen::Isometry3f;
 
 /// Rotation of the rotation vector `omega` (axis times angle, radians).

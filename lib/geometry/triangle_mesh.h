@@ -18,6 +18,7 @@ struct TriangleMesh {
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< Red, green, blue.
   std::vector<Eigen::Vector3i> triangles;           ///< Vertex indices.
 
+  /// Whether there is no vertex.
   bool empty() const { return vertices.empty(); }
 };
 

@@ -10,7 +10,9 @@ namespace splitfusion {
 /// A rendered model: what a camera would see of it. All images HxW of the
 /// camera; camera frame, metres; points with z = 0 where nothing is.
 struct ModelMap {
+  /// Camera that the model was rendered for.
   PinholeCamera camera;
+  /// Camera frame, metres; z = 0 where nothing is.
   cv::Mat_<cv::Vec3f> points;
   cv::Mat_<cv::Vec3f> normals;  ///< Unit length; 0 where nothing is.
   cv::Mat_<cv::Vec3b> color;    ///< BGR.

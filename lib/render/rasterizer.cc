@@ -64,14 +64,14 @@ void DrawRows(const ScreenTriangle& t, int row_begin, int row_end,
     const float pv = static_cast<float>(v);
     for (int u = t.u_begin; u <= t.u_end; ++u) {
       const float pu = static_cast<float>(u);
-      const float b0 = t.inverse_area * EdgeFunction(t.u[1], t.v[1], t.u[2],
-                                                     t.v[2], pu, pv);
-      const float b1 = t.inverse_area * EdgeFunction(t.u[2], t.v[2], t.u[0],
-                                                     t.v[0], pu, pv);
+      const float b0 =
+          t.inverse_area * EdgeFunction(t.u[1], t.v[1], t.u[2], t.v[2], pu, pv);
+      const float b1 =
+          t.inverse_area * EdgeFunction(t.u[2], t.v[2], t.u[0], t.v[0], pu, pv);
       const float b2 = 1.0f - b0 - b1;
       if (b0 < 0 || b1 < 0 || b2 < 0) continue;
-      const float inverse_z = b0 * t.inverse_z[0] + b1 * t.inverse_z[1] +
-                              b2 * t.inverse_z[2];
+      const float inverse_z =
+          b0 * t.inverse_z[0] + b1 * t.inverse_z[1] + b2 * t.inverse_z[2];
       const float depth = 1.0f / inverse_z;
       if (depths[u] > 0 && depths[u] <= depth) continue;
       depths[u] = depth;

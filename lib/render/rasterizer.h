@@ -13,7 +13,7 @@ namespace splitfusion {
 /// it by the caller. Reused between calls without allocation.
 struct Raster {
   cv::Mat_<float> depth;            ///< HxW z-depth, metres; 0 = nothing.
-  cv::Mat_<int> triangle;          ///< HxW triangle index; -1 = nothing.
+  cv::Mat_<int> triangle;           ///< HxW triangle index; -1 = nothing.
   cv::Mat_<cv::Vec3f> barycentric;  ///< HxW weights of its three corners.
 
   /// Empties the raster for an image of the camera's size.

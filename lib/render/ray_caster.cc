@@ -147,7 +147,8 @@ class Caster {
         if (distance > 0) previous = distance;
       }
       // Distances are along the ray to within the slope: half is safe.
-      const float free = distance > 0 && weight > 0 ? 0.5f * distance / voxel_ : 0;
+      const float free =
+          distance > 0 && weight > 0 ? 0.5f * distance / voxel_ : 0;
       t += voxel_step * std::max(free, 0.7f);
     }
     return 0;
@@ -242,8 +243,7 @@ class Caster {
       }
     }
     *gradient = sample.gradient;
-    const float ratio =
-        at_near.distance / (at_near.distance - at_far.distance);
+    const float ratio = at_near.distance / (at_near.distance - at_far.distance);
     return near + ratio * (far - near);
   }
 
@@ -258,7 +258,8 @@ class Caster {
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Casts the rays of all pixels, rows in parallel; calls
-/// visit(v, u, direction, depth, position, gradient, caster) for those that hit.
+/// visit(v, u, direction, depth, position, gradient, caster) for those that
+/// hit.
 template <typename Visit>
 void CastAll(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
              const PinholeCamera& camera, const RayCastOptions& options,
@@ -299,8 +300,7 @@ ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
                  const PinholeCamera& camera, const RayCastOptions& options) {
   ModelMap map;
   map.Clear(camera);
-  const Eigen::Matrix3f rotation =
-      camera_from_canonical.linear().cast<float>();
+  const Eigen::Matrix3f rotation = camera_from_canonical.linear().cast<float>();
   CastAll(volume, camera_from_canonical, camera, options,
           [&](int v, int u, const Eigen::Vector3f& direction, float depth,
               const Eigen::Vector3f& position, const Eigen::Vector3f& gradient,

@@ -9,8 +9,8 @@ namespace splitfusion {
 
 /// How a volume is ray-cast.
 struct RayCastOptions {
-  double min_depth = 0.2;   ///< Metres along the optical axis.
-  double max_depth = 6.0;   ///< Metres along the optical axis.
+  double min_depth = 0.2;    ///< Metres along the optical axis.
+  double max_depth = 6.0;    ///< Metres along the optical axis.
   double min_weight = 0.01;  ///< Voxels observed less are not surface.
 
   /// @throw InputError if a value is out of its range.

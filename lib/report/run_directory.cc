@@ -86,8 +86,9 @@ void WriteText(const std::string& path, const std::string& text) {
 void ClearRun(const RunPaths& paths) {
   std::error_code ignored;
   for (const std::string& path :
-       {paths.Options(), paths.Calibration(), paths.Trajectory(), paths.Frames(), paths.Iterations(),
-        paths.Summary(), paths.Evaluation(), paths.HtmlReport()}) {
+       {paths.Options(), paths.Calibration(), paths.Trajectory(),
+        paths.Frames(), paths.Iterations(), paths.Summary(), paths.Evaluation(),
+        paths.HtmlReport()}) {
     fs::remove(path, ignored);
   }
   for (const char* folder : {"surfaces", "pictures", "masks", "solver"}) {

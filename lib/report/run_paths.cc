@@ -22,9 +22,7 @@ bool IsPlain(char c) {
 RunPaths::RunPaths(std::string root) : root_(std::move(root)) {}
 
 std::string RunPaths::Options() const { return Below("options.flags"); }
-std::string RunPaths::Calibration() const {
-  return Below("calibration.txt");
-}
+std::string RunPaths::Calibration() const { return Below("calibration.txt"); }
 std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }
 std::string RunPaths::Frames() const { return Below("frames.jsonl"); }
 std::string RunPaths::Iterations() const { return Below("iterations.csv"); }

@@ -28,8 +28,8 @@ class RunPaths {
   std::string Picture(int frame, const std::string& name) const;
   /// RUN/masks/STEM.png, 16-bit surface ids; `stem` of the depth file.
   std::string Mask(const std::string& stem) const;
-  /// RUN/surfaces/NNN_LABEL; characters of the label other than letters, digits,
-  /// hyphens and dots become underscores.
+  /// RUN/surfaces/NNN_LABEL; characters of the label other than letters,
+  /// digits, hyphens and dots become underscores.
   std::string Surface(int id, const std::string& label) const;
   /// RUN/surfaces/NNN_LABEL/warped/FRAME.ply
   std::string WarpedMesh(int id, const std::string& label, int frame) const;

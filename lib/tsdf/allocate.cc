@@ -24,8 +24,7 @@ openvdb::Coord LeafOrigin(const Eigen::Vector3d& voxel) {
 
 void SortUnique(std::vector<openvdb::Coord>* origins) {
   std::sort(origins->begin(), origins->end());
-  origins->erase(std::unique(origins->begin(), origins->end()),
-                 origins->end());
+  origins->erase(std::unique(origins->begin(), origins->end()), origins->end());
 }
 
 /// Blocks that the band around the pixels of one row passes through.
@@ -44,8 +43,8 @@ std::vector<openvdb::Coord> CollectRow(const DepthObservation& observation,
     const double z_end = depth[u] + options.truncation;
     for (double z = depth[u] - options.truncation;; z += step) {
       const Eigen::Vector3d point =
-          canonical_from_camera * observation.camera.BackProject<double>(
-                                      u, v, std::min(z, z_end));
+          canonical_from_camera *
+          observation.camera.BackProject<double>(u, v, std::min(z, z_end));
       const openvdb::Coord origin = LeafOrigin(point / options.voxel_size);
       if (origins.empty() || origins.back() != origin) {
         origins.push_back(origin);

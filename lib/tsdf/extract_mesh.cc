@@ -12,9 +12,8 @@
 namespace splitfusion {
 namespace {
 
-using Sampler =
-    openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor,
-                                openvdb::tools::BoxSampler>;
+using Sampler = openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor,
+                                            openvdb::tools::BoxSampler>;
 using ColorSampler =
     openvdb::tools::GridSampler<openvdb::Vec3SGrid::ConstAccessor,
                                 openvdb::tools::BoxSampler>;
@@ -34,8 +33,8 @@ class VertexSampler {
   bool Observed(const openvdb::Vec3d& p) const {
     const openvdb::Coord base = openvdb::Coord::floor(p);
     for (int corner = 0; corner < 8; ++corner) {
-      const openvdb::Coord at = base.offsetBy(corner & 1, (corner >> 1) & 1,
-                                              (corner >> 2) & 1);
+      const openvdb::Coord at =
+          base.offsetBy(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
       if (!(weight_accessor_.getValue(at) >= min_weight_)) return false;
     }
     return true;

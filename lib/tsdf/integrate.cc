@@ -20,12 +20,12 @@ void VoxelUpdater::Update(const Eigen::Vector3f& p, float* distance,
   const PinholeCamera& camera = observation.camera;
   if (!(p.z() > 0.05f)) return;
   const float inverse_z = 1 / p.z();
-  const int u = static_cast<int>(std::lround(
-      static_cast<float>(camera.fx) * p.x() * inverse_z +
-      static_cast<float>(camera.cx)));
-  const int v = static_cast<int>(std::lround(
-      static_cast<float>(camera.fy) * p.y() * inverse_z +
-      static_cast<float>(camera.cy)));
+  const int u = static_cast<int>(
+      std::lround(static_cast<float>(camera.fx) * p.x() * inverse_z +
+                  static_cast<float>(camera.cx)));
+  const int v = static_cast<int>(
+      std::lround(static_cast<float>(camera.fy) * p.y() * inverse_z +
+                  static_cast<float>(camera.cy)));
   if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) return;
   const auto role = static_cast<PixelRole>(observation.role(v, u));
   const float depth = observation.depth(v, u);

@@ -72,10 +72,10 @@ std::size_t TsdfVolume::leaf_count() const {
 void TsdfVolume::Write(const std::string& path) const {
   WritePathAtomically(path, [&](const std::string& temporary) {
     try {
-      grids_->distance->insertMeta("truncation",
-                                   openvdb::DoubleMetadata(options_.truncation));
-      grids_->distance->insertMeta("max_weight",
-                                   openvdb::DoubleMetadata(options_.max_weight));
+      grids_->distance->insertMeta(
+          "truncation", openvdb::DoubleMetadata(options_.truncation));
+      grids_->distance->insertMeta(
+          "max_weight", openvdb::DoubleMetadata(options_.max_weight));
       openvdb::io::File file(temporary);
       file.write({grids_->distance, grids_->weight, grids_->color});
       file.close();

@@ -16,9 +16,9 @@ namespace splitfusion {
 
 /// Resolution of a volume.
 struct TsdfOptions {
-  double voxel_size = 0.01;   ///< Metres.
-  double truncation = 0.04;   ///< Metres; at least 2 voxels.
-  double max_weight = 64;     ///< Cap of the running mean's weight.
+  double voxel_size = 0.01;  ///< Metres.
+  double truncation = 0.04;  ///< Metres; at least 2 voxels.
+  double max_weight = 64;    ///< Cap of the running mean's weight.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
@@ -33,6 +33,7 @@ enum class PixelRole : std::uint8_t {
 
 /// One depth image, as a volume sees it; all images HxW of the camera.
 struct DepthObservation {
+  /// Intrinsics of all images.
   PinholeCamera camera;
   cv::Mat_<float> depth;        ///< Metres, 0 = none.
   cv::Mat_<float> weight;       ///< Confidence of every pixel, about 0..1.
@@ -45,16 +46,22 @@ struct DepthObservation {
 /// positive in front of the surface, in metres.
 class TsdfVolume {
  public:
+  /// An empty volume. @throw InputError if an option is out of range.
   explicit TsdfVolume(const TsdfOptions& options);
   ~TsdfVolume();
+  /// Takes the grids over.
   TsdfVolume(TsdfVolume&&) noexcept;
+  /// Takes the grids over.
   TsdfVolume& operator=(TsdfVolume&&) noexcept;
 
   /// Opaque grids; defined where OpenVDB is.
   struct Grids;
 
+  /// Resolution and caps.
   const TsdfOptions& options() const { return options_; }
+  /// The OpenVDB grids.
   const Grids& grids() const { return *grids_; }
+  /// The OpenVDB grids, to be changed.
   Grids& grids() { return *grids_; }
 
   /// Number of 8x8x8 blocks in memory.

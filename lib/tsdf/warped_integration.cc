@@ -14,7 +14,7 @@ namespace {
 
 using internal::kLeafSize;
 
-constexpr int kCell = 4;                        // Voxels between lattice points.
+constexpr int kCell = 4;  // Voxels between lattice points.
 constexpr int kLattice = kLeafSize / kCell + 1;  // Points along an edge: 3.
 constexpr int kLatticePoints = kLattice * kLattice * kLattice;
 
@@ -45,7 +45,8 @@ LeafLattice SkinLeaf(const openvdb::Coord& origin, float voxel, float reach,
   for (int x = 0; x < kLattice; ++x) {
     for (int y = 0; y < kLattice; ++y) {
       for (int z = 0; z < kLattice; ++z) {
-        lattice.skinning[i++] = index.Skin(LatticePoint(origin, voxel, x, y, z));
+        lattice.skinning[i++] =
+            index.Skin(LatticePoint(origin, voxel, x, y, z));
       }
     }
   }
@@ -139,12 +140,13 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
   }
   tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
     const std::size_t i = missing[m];
-    *lattices[i] = SkinLeaf(leaves[i].origin, voxel,
-                            static_cast<float>(reach), index);
+    *lattices[i] =
+        SkinLeaf(leaves[i].origin, voxel, static_cast<float>(reach), index);
   });
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     if (!lattices[i]->attached) return;
-    IntegrateLeaf(updater, WarpLeaf(leaves[i].origin, voxel, *lattices[i], warp),
+    IntegrateLeaf(updater,
+                  WarpLeaf(leaves[i].origin, voxel, *lattices[i], warp),
                   leaves[i]);
   });
 }

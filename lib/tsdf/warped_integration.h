@@ -21,7 +21,9 @@ class WarpedIntegrator {
  public:
   WarpedIntegrator();
   ~WarpedIntegrator();
+  /// Takes the skinning over.
   WarpedIntegrator(WarpedIntegrator&&) noexcept;
+  /// Takes the skinning over.
   WarpedIntegrator& operator=(WarpedIntegrator&&) noexcept;
 
   /// Forgets all skinning; to be called when the graph has grown.

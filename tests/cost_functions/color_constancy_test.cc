@@ -15,7 +15,7 @@ constexpr double kUnit = ColorConstancy::kMetresPerIntensity;
 
 ColorConstancy Sample() {
   ColorConstancy color{};
-  color.fx = 130, color.fy = 131, color.cx = 80, color.cy = 60;
+  color.camera = {160, 120, 130, 131, 80, 60};
   color.pixel = {100, 40};
   color.gradient = {0.02, -0.01};
   color.difference = 0.1;

@@ -12,8 +12,8 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/sequence/tum_reader.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
-#include "support/temporary_folder.h"
 #include "support/expect_input_error.h"
+#include "support/temporary_folder.h"
 
 namespace splitfusion {
 namespace {
