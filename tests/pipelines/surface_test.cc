@@ -1,0 +1,215 @@
+#include "splitfusion/pipelines/surface.h"
+
+#include <gtest/gtest.h>
+
+#include "splitfusion/pipelines/model_rendering.h"
+#include "splitfusion/pipelines/surface_output.h"
+#include "support/expect_input_error.h"
+#include "support/sample_depth.h"
+#include "support/sample_graphs.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+/// A wall at 1.5 m; `area` of it stands 0.5 m nearer and is surface 1.
+LiveView ViewWithBox(const cv::Rect& area) {
+  cv::Mat_<float> depth = WallDepth(SmallCamera(), 1.5);
+  depth(area).setTo(1.0f);
+  LiveView live = MakeLiveView(SmallCamera(), depth,
+                               PlainColor(SmallCamera(), {10, 200, 30}));
+  live.labels(area).setTo(1);
+  return live;
+}
+
+const cv::Rect kHalf(50, 40, 30, 40), kWhole(50, 40, 60, 40);
+
+Surface MakeBox(SurfaceKind kind) {
+  return Surface(1, "teddy bear", kind, 4, SurfaceOptions());
+}
+
+TEST(Surface, TheRigidBackgroundHasOneNodeAndIsRayCast) {
+  Surface background(0, "background", SurfaceKind::kRigid, 0, {});
+  ASSERT_TRUE(background.Initialize(ViewWithBox(kHalf)));
+  EXPECT_TRUE(background.is_ray_cast());
+  EXPECT_TRUE(background.graph().rigid());
+  background.UpdateMesh(false);
+  for (const Eigen::Vector3f& v : background.mesh().vertices) {
+    EXPECT_NEAR(v.z(), 1.5, 0.01) << "the box is another surface";
+  }
+}
+
+TEST(Surface, NothingSeenIsNoSurface) {
+  LiveView live = ViewWithBox(kHalf);
+  live.labels.setTo(0);
+  EXPECT_FALSE(MakeBox(SurfaceKind::kNonRigid).Initialize(live));
+  live.depth.setTo(0);
+  Surface background(0, "background", SurfaceKind::kRigid, 0, {});
+  EXPECT_FALSE(background.Initialize(live));
+}
+
+TEST(Surface, AnObjectIsMeshedAndCoveredWithNodes) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  EXPECT_FALSE(box.is_ray_cast());
+  ASSERT_GT(box.mesh().vertices.size(), 300u);
+  for (const Eigen::Vector3f& v : box.mesh().vertices) {
+    EXPECT_NEAR(v.z(), 1.0, 0.01);
+  }
+  EXPECT_GT(box.graph().size(), 20);
+  EXPECT_EQ(box.graph().node_spacing, NodeSpacing(box.options().graph, 1.0));
+  EXPECT_EQ(box.mesh_skinning().size(), box.mesh().vertices.size());
+  Surface rigid = MakeBox(SurfaceKind::kRigid);
+  ASSERT_TRUE(rigid.Initialize(ViewWithBox(kHalf)));
+  EXPECT_TRUE(rigid.graph().rigid());
+}
+
+TEST(Surface, GrowsOverWhatComesIntoView) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true);
+  const int nodes = box.graph().size();
+  const std::size_t vertices = box.mesh().vertices.size();
+  for (int frame = 5; frame < 9; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh(/*grow=*/true);
+    box.RecordMotions(frame, true);
+  }
+  EXPECT_GT(box.graph().size(), 1.5 * nodes);
+  EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
+  for (const FrameMotions& frame : box.history().frames) {
+    EXPECT_EQ(frame.motions.size(), box.graph().positions.size());
+  }
+}
+
+TEST(Surface, VerticesMoveWithTheNodes) {
+  for (const SurfaceKind kind : {SurfaceKind::kRigid, SurfaceKind::kNonRigid}) {
+    Surface box = MakeBox(kind);
+    ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+    const Rigid3d motion = MakeMotion({0.1, 0.2, 0}, {0.3, 0, 0.1});
+    ApplyRigidMotion(motion, box.mutable_graph());
+    const std::vector<Eigen::Vector3f> warped = box.WarpedVertices();
+    for (std::size_t i = 0; i < warped.size(); i += 17) {
+      EXPECT_LT(
+          (warped[i] - motion.cast<float>() * box.mesh().vertices[i]).norm(),
+          1e-5);
+    }
+  }
+}
+
+TEST(Surface, IsWrittenWithConstantVertexOrder) {
+  const TemporaryFolder folder;
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true);
+  ApplyRigidMotion(MakeMotion({0, 0, 0}, {0.5, 0, 0}), box.mutable_graph());
+  box.RecordMotions(5, true);
+  box.RecordMotions(6, false);
+  WriteSurface(RunPaths(folder / "run"), box, /*warped_every=*/2);
+  const std::string at = "run/surfaces/001_teddy_bear/";
+  EXPECT_FALSE(folder.Has(at + "warped/000005.ply"));
+  const TriangleMesh rest = ReadPly(folder / (at + "mesh.ply"));
+  const TriangleMesh born = ReadPly(folder / (at + "warped/000004.ply"));
+  const TriangleMesh later = ReadPly(folder / (at + "warped/000006.ply"));
+  EXPECT_EQ(later.triangles, rest.triangles);
+  ASSERT_EQ(later.vertices.size(), rest.vertices.size());
+  for (std::size_t i = 0; i < rest.vertices.size(); ++i) {
+    EXPECT_LT((born.vertices[i] - rest.vertices[i]).norm(), 1e-5);
+    EXPECT_NEAR(later.vertices[i].x() - rest.vertices[i].x(), 0.5, 1e-5);
+  }
+  EXPECT_GT(TsdfVolume::Read(folder / (at + "tsdf.vdb")).leaf_count(), 0u);
+  EXPECT_EQ(ReadGraph(folder / (at + "graph.json"), nullptr).size(),
+            box.graph().size());
+  EXPECT_EQ(ReadMotions(folder / (at + "motions.bin")).frames.size(), 3u);
+}
+
+/// Background and box as a scene.
+SurfaceMap Scene() {
+  SurfaceMap surfaces;
+  surfaces[0] = std::make_unique<Surface>(0, "background", SurfaceKind::kRigid,
+                                          0, SurfaceOptions());
+  surfaces[1] = std::make_unique<Surface>(1, "box", SurfaceKind::kNonRigid, 0,
+                                          SurfaceOptions());
+  for (auto& [id, surface] : surfaces) {
+    EXPECT_TRUE(surface->Initialize(ViewWithBox(kWhole)));
+  }
+  return surfaces;
+}
+
+TEST(ModelRendering, ReunitesAllSurfacesInTheCameraFrame) {
+  const SurfaceMap surfaces = Scene();
+  const SceneRendering scene =
+      RenderScene(surfaces, SmallCamera(), RayCastOptions());
+  EXPECT_EQ(scene.labels(60, 80), 1);
+  EXPECT_NEAR(scene.map.points(60, 80)[2], 1.0, 0.005);
+  EXPECT_LT(scene.map.normals(60, 80)[2], -0.95);
+  EXPECT_NEAR(scene.map.color(60, 80)[1], 200, 3);  // BGR.
+  EXPECT_EQ(scene.labels(20, 20), 0);
+  EXPECT_NEAR(scene.map.points(20, 20)[2], 1.5, 0.005);
+}
+
+TEST(ModelRendering, WhatMovesBehindTheRoomIsHidden) {
+  const SurfaceMap surfaces = Scene();
+  ApplyRigidMotion(MakeMotion({0, 0, 0}, {-0.05, 0, 1}),
+                   surfaces.at(1)->mutable_graph());
+  const SceneRendering scene =
+      RenderScene(surfaces, SmallCamera(), RayCastOptions());
+  // The room has a hole where the box had hidden it.
+  EXPECT_EQ(scene.labels(60, 30), 0);
+  ApplyRigidMotion(MakeMotion({0, 0, 0}, {-0.3, 0, -1}),
+                   surfaces.at(1)->mutable_graph());
+  EXPECT_EQ(
+      RenderScene(surfaces, SmallCamera(), RayCastOptions()).labels(60, 40), 1);
+}
+
+TEST(ModelRendering, PredictionHasTheFullSize) {
+  const SurfaceMap surfaces = Scene();
+  const MeshRendering rendering =
+      RenderMeshes(surfaces, SmallCamera().Subsampled(2));
+  const SurfacePrediction prediction = ToPrediction(rendering, SmallCamera());
+  EXPECT_EQ(prediction.labels.size(), cv::Size(160, 120));
+  EXPECT_EQ(prediction.labels(60, 80), 1);
+  EXPECT_NEAR(prediction.depth(60, 80), 1.0, 0.005);
+  EXPECT_EQ(prediction.labels(10, 10), 0);
+  EXPECT_EQ(prediction.depth(10, 10), 0);
+}
+
+TEST(ModelRendering, SamplesLieOnTheSurfaceAtTheirPixels) {
+  const SurfaceMap surfaces = Scene();
+  const Rigid3d motion = MakeMotion({0, 0.1, 0}, {0.02, 0, 0.05});
+  for (const auto& [id, surface] : surfaces) {
+    ApplyRigidMotion(motion, surface->mutable_graph());
+  }
+  const MeshRendering rendering =
+      RenderMeshes(surfaces, SmallCamera().Subsampled(2));
+  const auto check = [&](const std::vector<ModelSample>& samples, double z) {
+    ASSERT_GT(samples.size(), 300u);
+    for (const ModelSample& sample : samples) {
+      EXPECT_NEAR(sample.point.z(), z, 0.01);
+      EXPECT_LT(sample.normal.z(), -0.9);
+      EXPECT_EQ(sample.u % 2 + sample.v % 2, 0);
+      const Eigen::Vector2f pixel =
+          SmallCamera().Project<float>(motion.cast<float>() * sample.point);
+      EXPECT_NEAR(pixel.x(), sample.u, 0.05);
+      EXPECT_NEAR(pixel.y(), sample.v, 0.05);
+    }
+  };
+  check(VisibleSamples(rendering, *surfaces.at(1), 2), 1.0);
+  check(RayCastSamples(*surfaces.at(0), SmallCamera(), 2, RayCastOptions()),
+        1.5);
+}
+
+TEST(SurfaceOptions, RefuseValuesOutOfRange) {
+  SurfaceOptions options;
+  options.min_mesh_weight = -1;
+  ExpectInputError([&] { options.Check(); }, "min_mesh_weight");
+  options = SurfaceOptions();
+  options.graph.max_nodes = 0;
+  ExpectInputError([&] { options.Check(); }, "max_nodes = 0");
+  options = SurfaceOptions();
+  options.tsdf.truncation = 0;
+  ExpectInputError([&] { options.Check(); }, "truncation = 0");
+}
+
+}  // namespace
+}  // namespace splitfusion

@@ -1,0 +1,226 @@
+// sf_synth, sf_run and sf_evaluate, as others call them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "support/program.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+int LineCount(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+/// Lines of a trajectory that are no comment.
+std::vector<std::string> Poses(const std::string& text) {
+  std::stringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.empty() && line[0] != '#') lines.push_back(line);
+  }
+  return lines;
+}
+
+class SfRun : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* program : {"sf_synth", "sf_run", "sf_evaluate"}) {
+      if (!HasProgram(program)) GTEST_SKIP() << program << " is not built";
+    }
+  }
+
+  /// A tiny sequence of four frames in the folder `sequence`.
+  void Synthesize() const {
+    const ProgramResult result =
+        RunProgram("sf_synth", "--width=160 --height=120 --frames=4 --output=" +
+                                   (folder_ / "sequence"));
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+  }
+
+  ProgramResult Run(const std::string& output,
+                    const std::string& arguments = "") const {
+    return RunProgram("sf_run", "--sequence=" + (folder_ / "sequence") +
+                                    " --output=" + (folder_ / output) + " " +
+                                    arguments);
+  }
+
+  /// Expects exit code 2, nothing on stdout and one line that says `text`.
+  static void ExpectRefused(const std::string& program,
+                            const std::string& arguments,
+                            const std::string& text) {
+    const ProgramResult result = RunProgram(program, arguments);
+    EXPECT_EQ(result.exit_code, 2) << program << " " << arguments;
+    EXPECT_EQ(result.output, "");
+    EXPECT_THAT(result.errors, HasSubstr(text));
+    EXPECT_EQ(LineCount(result.errors), 1) << result.errors;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SfRun, WritesWhatTheContractNames) {
+  Synthesize();
+  const ProgramResult result =
+      Run("run",
+          "--warped_every=2 --pictures_every=3 --full_report "
+          "--solver=ceres --solver_iterations=1");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  for (const char* name : {"trajectory.txt",
+                           "summary.json",
+                           "frames.jsonl",
+                           "iterations.csv",
+                           "options.flags",
+                           "report.html",
+                           "surfaces/000_background/mesh.ply",
+                           "surfaces/000_background/tsdf.vdb",
+                           "surfaces/000_background/graph.json",
+                           "surfaces/000_background/motions.bin",
+                           "surfaces/001_person/mesh.ply",
+                           "surfaces/001_person/tsdf.vdb",
+                           "surfaces/001_person/graph.json",
+                           "surfaces/001_person/motions.bin",
+                           "surfaces/001_person/warped/000000.ply",
+                           "surfaces/001_person/warped/000002.ply",
+                           "pictures/000000_montage.png",
+                           "pictures/000003_composite.png",
+                           "pictures/000003_normals.png",
+                           "solver/000001.txt"}) {
+    EXPECT_TRUE(folder_.Has(std::string("run/") + name)) << name;
+  }
+  EXPECT_FALSE(folder_.Has("run/surfaces/001_person/warped/000001.ply"));
+  EXPECT_FALSE(folder_.Has("run/pictures/000001_montage.png"));
+  EXPECT_EQ(Poses(folder_.Read("run/trajectory.txt")).size(), 4u);
+  EXPECT_EQ(LineCount(folder_.Read("run/frames.jsonl")), 4);
+  const auto summary = nlohmann::json::parse(folder_.Read("run/summary.json"));
+  EXPECT_EQ(summary["frames"], 4);
+  EXPECT_EQ(summary["lost_frames"], 0);
+  for (const char* part : {"read", "segment", "split", "render", "associate",
+                           "solve", "fuse", "mesh"}) {
+    EXPECT_TRUE(summary["seconds_per_frame"]["parts"].contains(part)) << part;
+  }
+  EXPECT_GT(summary["peak_memory_bytes"], 1000000);
+  EXPECT_EQ(summary["surfaces"][0]["label"], "background");
+  EXPECT_GT(summary["surfaces"][1]["vertices"], 1000);
+}
+
+TEST_F(SfRun, IsEvaluatedAndRepeatedByItsOwnFlagfile) {
+  Synthesize();
+  ASSERT_EQ(Run("run",
+                "--max_frames=3 --pictures_every=0 --warped_every=0 "
+                "--threads=2")
+                .exit_code,
+            0);
+  const ProgramResult evaluation =
+      RunProgram("sf_evaluate",
+                 "--samples=500 --track_frames=2 --run=" + (folder_ / "run") +
+                     " --ground_truth=" + (folder_ / "sequence/gt"));
+  EXPECT_EQ(evaluation.exit_code, 0) << evaluation.errors;
+  const auto json = nlohmann::json::parse(folder_.Read("run/evaluation.json"));
+  EXPECT_LT(json["ate"]["rmse"], 0.05);
+  const ProgramResult repeated = RunProgram(
+      "sf_run", "--flagfile=" + (folder_ / "run/options.flags") +
+                    " --output=" + (folder_ / "again") + " --threads=1");
+  ASSERT_EQ(repeated.exit_code, 0) << repeated.errors;
+  for (const char* file :
+       {"trajectory.txt", "surfaces/000_background/mesh.ply",
+        "surfaces/001_person/mesh.ply", "surfaces/001_person/motions.bin"}) {
+    const std::string name = std::string("/") + file;
+    EXPECT_FALSE(folder_.Read("run" + name).empty()) << file;
+    EXPECT_EQ(folder_.Read("again" + name), folder_.Read("run" + name)) << file;
+  }
+}
+
+TEST_F(SfRun, ABrokenFrameEndsTheRunAndKeepsWhatWasComputed) {
+  Synthesize();
+  std::vector<fs::path> images;
+  for (const auto& entry : fs::directory_iterator(folder_ / "sequence/depth")) {
+    images.push_back(entry.path());
+  }
+  std::sort(images.begin(), images.end());
+  fs::resize_file(images.at(2), fs::file_size(images.at(2)) / 2);
+  const ProgramResult result = Run("run", "--pictures_every=0");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, HasSubstr(images.at(2).filename().string()));
+  EXPECT_EQ(Poses(folder_.Read("run/trajectory.txt")).size(), 2u);
+  EXPECT_EQ(LineCount(folder_.Read("run/frames.jsonl")), 2);
+  EXPECT_TRUE(folder_.Has("run/surfaces/000_background/mesh.ply"));
+  EXPECT_TRUE(folder_.Has("run/surfaces/001_person/mesh.ply"));
+  EXPECT_EQ(nlohmann::json::parse(folder_.Read("run/summary.json"))["frames"],
+            2);
+}
+
+TEST_F(SfRun, BadUsageEndsWithTwoAndOneLine) {
+  ExpectRefused("sf_run", "", "--sequence = '': expected the folder");
+  ExpectRefused("sf_run", "--sequence=x", "--output = ''");
+  ExpectRefused("sf_run", "--no_such_flag=1", "unknown command line flag");
+  ExpectRefused("sf_run", "--threads=two", "illegal value 'two'");
+  ExpectRefused("sf_run", "leftover", "argument 'leftover'");
+  const std::string missing = folder_ / "missing";
+  ExpectRefused("sf_run",
+                "--sequence=" + missing + " --output=" + (folder_ / "run"),
+                missing);
+  EXPECT_FALSE(folder_.Has("run"));
+}
+
+TEST_F(SfRun, BadOptionsEndWithTwoAndLeaveNothing) {
+  Synthesize();
+  const std::string start = "--sequence=" + (folder_ / "sequence") +
+                            " --output=" + (folder_ / "run") + " ";
+  const auto refused = [&](const std::string& option, const std::string& text) {
+    ExpectRefused("sf_run", start + option, text);
+  };
+  refused("--preset=fusion", "preset = fusion: expected background_only");
+  refused("--terms=arapp", "term 'arapp' is unknown: expected arap");
+  refused("--linear_solver=lu", "linear_solver = lu: expected auto");
+  refused("--object_voxel=0", "voxel_size = 0");
+  refused("--mask_kind=soft", "--mask_kind = soft: expected rigid");
+  refused("--masks=/no/such/folder", "/no/such/folder");
+  refused("--intrinsics=1,2", "--intrinsics=1,2: expected fx,fy,cx,cy");
+  refused("--max_frames=-1", "max_frames = -1");
+  EXPECT_FALSE(folder_.Has("run"));
+}
+
+TEST_F(SfRun, RefusesToOverwriteUnlessTold) {
+  Synthesize();
+  folder_.Write("run/mine.txt", "do not touch");
+  EXPECT_EQ(Run("run", "--max_frames=1").exit_code, 2);
+  EXPECT_EQ(folder_.Read("run/mine.txt"), "do not touch");
+  EXPECT_EQ(Run("run", "--max_frames=1 --overwrite").exit_code, 0);
+  EXPECT_EQ(folder_.Read("run/mine.txt"), "do not touch");
+}
+
+TEST_F(SfRun, HelpNamesOwnFlags) {
+  const ProgramResult result = RunProgram("sf_run", "--help");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.output,
+              AllOf(HasSubstr("--sequence"), HasSubstr("--linear_solver"),
+                    HasSubstr("--trust_region")));
+}
+
+TEST_F(SfRun, SynthRefusesBadUsage) {
+  const std::string output = " --output=" + (folder_ / "sequence");
+  ExpectRefused("sf_synth", "", "--output");
+  ExpectRefused("sf_synth", "--scene=moon" + output, "moon");
+  ExpectRefused("sf_synth", "--frames=0" + output, "frames = 0");
+  ExpectRefused("sf_synth", "--width=10" + output, "width = 10");
+  EXPECT_FALSE(folder_.Has("sequence"));
+  folder_.Write("sequence/mine.txt", "do not touch");
+  ExpectRefused("sf_synth", output, folder_ / "sequence");
+  ExpectRefused("sf_synth", "--overwrite" + output, folder_ / "sequence");
+  EXPECT_EQ(folder_.Read("sequence/mine.txt"), "do not touch");
+}
+
+}  // namespace
+}  // namespace splitfusion
