@@ -32,6 +32,45 @@ double Figure(const Json& value, const char* pointer) {
   return item.is_number() ? item.get<double>() : BatchFigures::kNone;
 }
 
+/// Mean of the values that are known.
+double MeanFigure(const std::vector<double>& values) {
+  double sum = 0;
+  int count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? sum / count : BatchFigures::kNone;
+}
+
+void ReadObjects(const Json& evaluation, BatchFigures* figures) {
+  std::vector<double> view, uncovered, accuracy;
+  const Json instances = evaluation.is_object()
+                             ? evaluation.value("instances", Json::array())
+                             : Json::array();
+  for (const Json& item : instances) {
+    view.push_back(Figure(item, "/view/distances/mean"));
+    uncovered.push_back(Figure(item, "/view/uncovered") /
+                        Figure(item, "/view/pixels"));
+    accuracy.push_back(Figure(item, "/surface/accuracy/mean"));
+  }
+  figures->objects_view_m = MeanFigure(view);
+  figures->objects_uncovered = MeanFigure(uncovered);
+  figures->objects_accuracy_m = MeanFigure(accuracy);
+}
+
+void ReadErrors(const Json& evaluation, BatchFigures* figures) {
+  figures->ate_rmse_m = Figure(evaluation, "/ate/rmse");
+  figures->background_accuracy_m =
+      Figure(evaluation, "/background/accuracy/mean");
+  figures->background_completeness =
+      Figure(evaluation, "/background/completeness/within/0.02");
+  figures->track_median_m = Figure(evaluation, "/tracks/visible/median");
+  figures->track_mean_m = Figure(evaluation, "/tracks/visible/mean");
+  ReadObjects(evaluation, figures);
+}
+
 Json ToJson(const BatchResult& result) {
   Json object = {
       {"sequence", result.run.sequence}, {"options", result.run.options},
@@ -114,7 +153,7 @@ BatchFigures ReadFigures(const std::string& run_folder) {
   figures.seconds_median = Figure(summary, "/seconds_per_frame/median");
   figures.seconds_mean = Figure(summary, "/seconds_per_frame/mean");
   figures.peak_memory_bytes = Figure(summary, "/peak_memory_bytes");
-  figures.ate_rmse_m = Figure(evaluation, "/ate/rmse");
+  ReadErrors(evaluation, &figures);
   return figures;
 }
 

@@ -16,9 +16,22 @@ struct BatchFigures {
   /// Value of a figure that is not known.
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-  double frames = kNone;             ///< Frames processed.
-  double lost_frames = kNone;        ///< Frames in which a surface was lost.
-  double ate_rmse_m = kNone;         ///< Aligned trajectory error, metres.
+  double frames = kNone;       ///< Frames processed.
+  double lost_frames = kNone;  ///< Frames in which a surface was lost.
+  double ate_rmse_m = kNone;   ///< Aligned trajectory error, metres.
+  /// Mean distance of the background's mesh to the true one, metres.
+  double background_accuracy_m = kNone;
+  /// Fraction of the true background that has a mesh within 20 mm.
+  double background_completeness = kNone;
+  /// Mean view error, metres; this and the next two are means over the moving
+  /// instances that have the figure.
+  double objects_view_m = kNone;
+  /// Fraction of the pixels of moving instances at which there is no model.
+  double objects_uncovered = kNone;
+  /// Mean distance of an instance's mesh to the true one, metres.
+  double objects_accuracy_m = kNone;
+  double track_median_m = kNone;     ///< Of visible surface points, metres.
+  double track_mean_m = kNone;       ///< Of visible surface points, metres.
   double seconds_median = kNone;     ///< Per frame.
   double seconds_mean = kNone;       ///< Per frame.
   double peak_memory_bytes = kNone;  ///< Largest resident size.
@@ -31,10 +44,17 @@ struct BatchColumn {
 };
 
 /// The figures in the order of the files.
-inline constexpr std::array<BatchColumn, 6> kBatchColumns = {{
+inline constexpr std::array<BatchColumn, 13> kBatchColumns = {{
     {"frames", &BatchFigures::frames},
     {"lost_frames", &BatchFigures::lost_frames},
     {"ate_rmse_m", &BatchFigures::ate_rmse_m},
+    {"background_accuracy_m", &BatchFigures::background_accuracy_m},
+    {"background_completeness", &BatchFigures::background_completeness},
+    {"objects_view_m", &BatchFigures::objects_view_m},
+    {"objects_uncovered", &BatchFigures::objects_uncovered},
+    {"objects_accuracy_m", &BatchFigures::objects_accuracy_m},
+    {"track_median_m", &BatchFigures::track_median_m},
+    {"track_mean_m", &BatchFigures::track_mean_m},
     {"seconds_median", &BatchFigures::seconds_median},
     {"seconds_mean", &BatchFigures::seconds_mean},
     {"peak_memory_bytes", &BatchFigures::peak_memory_bytes},

@@ -14,7 +14,9 @@ using Corners = std::array<Eigen::Vector3f, 3>;
 
 /// Weights of the corners at the point of a triangle nearest to p (Ericson,
 /// Real-Time Collision Detection, 5.1.5): the regions of the corners, of the
-/// edges, and the inside are told apart by the signs of scalar products.
+/// edges, and the inside are told apart by the signs of scalar products. An
+/// edge without length has no region, so that a triangle with two equal corners
+/// is the segment that it is. Not finite if rounding leaves a needle no area.
 Eigen::Vector3f ClosestWeights(const Eigen::Vector3f& p, const Corners& t) {
   const Eigen::Vector3f ab = t[1] - t[0];
   const Eigen::Vector3f ac = t[2] - t[0];
@@ -25,7 +27,7 @@ Eigen::Vector3f ClosestWeights(const Eigen::Vector3f& p, const Corners& t) {
   const float d4 = ac.dot(p - t[1]);
   if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
   const float vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) {
     const float v = d1 / (d1 - d3);
     return {1 - v, v, 0};
   }
@@ -33,7 +35,7 @@ Eigen::Vector3f ClosestWeights(const Eigen::Vector3f& p, const Corners& t) {
   const float d6 = ac.dot(p - t[2]);
   if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
   const float vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) {
     const float w = d2 / (d2 - d6);
     return {1 - w, 0, w};
   }
@@ -117,7 +119,8 @@ SurfacePoint TriangleTree::Closest(const Eigen::Vector3f& query,
       const Eigen::Vector3f w = ClosestWeights(query, t);
       const Eigen::Vector3f nearest = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
       const float distance_squared = (query - nearest).squaredNorm();
-      if (distance_squared >= best_squared) continue;
+      // Refuses also a distance that is not a number.
+      if (!(distance_squared < best_squared)) continue;
       best_squared = distance_squared;
       best.triangle = items_[i].triangle;
       best.barycentric = w;

@@ -107,5 +107,38 @@ TEST(TriangleTree, DegenerateTrianglesArePoints) {
   EXPECT_TRUE(found.barycentric.allFinite());
 }
 
+TEST(TriangleTree, TrianglesWithTwoEqualCornersAreSegments) {
+  const std::vector<Eigen::Vector3f> points = {{0, 0, 0}, {2, 0, 0}};
+  for (const Eigen::Vector3i& t :
+       {Eigen::Vector3i(0, 0, 1), Eigen::Vector3i(0, 1, 0),
+        Eigen::Vector3i(1, 0, 0), Eigen::Vector3i(1, 1, 0)}) {
+    const TriangleTree tree(points, {t});
+    for (const float x : {0.0f, 0.5f, 1.0f, 2.0f}) {
+      const SurfacePoint found = tree.Closest({x, 0, 1}, 10);
+      EXPECT_NEAR(found.distance, 1, 1e-6) << t.transpose() << " at " << x;
+      EXPECT_TRUE(found.barycentric.allFinite());
+    }
+    EXPECT_NEAR(tree.Closest({3, 0, 0}, 10).distance, 1, 1e-6);
+  }
+}
+
+TEST(TriangleTree, NeedlesDoNotHideTheirNeighbours) {
+  // Corners on a line that rounding bends: a random search for weights that
+  // are not finite.
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(0, 1);
+  const Eigen::Vector3f step(0.3f, 0.1f, 0.7f);
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3f a(place(random), place(random), place(random));
+    const TriangleTree tree(
+        {a, a + place(random) * step, a + place(random) * step}, {{0, 1, 2}});
+    const Eigen::Vector3f p(place(random), place(random), place(random));
+    const SurfacePoint found = tree.Closest(p, 10);
+    if (found.triangle < 0) continue;
+    EXPECT_TRUE(std::isfinite(found.distance));
+    EXPECT_LE(found.distance, (p - a).norm() + 1e-4f);
+  }
+}
+
 }  // namespace
 }  // namespace splitfusion

@@ -150,8 +150,9 @@ TEST_F(BatchTest, SummariesHoldTheTable) {
   EXPECT_TRUE(json[0]["frames"].is_null());
   EXPECT_EQ(json[1]["ate_rmse_m"], 0.0125);
   const std::string csv = folder_.Read("out/summary.csv");
-  EXPECT_NE(csv.find("/room/default,0,0,,10,1,0.0125,0.5,0.75,1048576\n"),
-            std::string::npos);
+  EXPECT_NE(
+      csv.find("/room/default,0,0,,10,1,0.0125,,,,,,,,0.5,0.75,1048576\n"),
+      std::string::npos);
   const std::string table = FormatBatchTable(results);
   EXPECT_NE(table.find("0.0125"), std::string::npos);
   EXPECT_NE(table.find("bad/rgb.txt: cannot be opened"), std::string::npos);
@@ -203,6 +204,41 @@ TEST_F(BatchTest, BrokenFilesOfARunGiveNoFigures) {
   EXPECT_TRUE(std::isnan(figures.lost_frames));
   EXPECT_TRUE(std::isnan(figures.ate_rmse_m));
   EXPECT_TRUE(std::isnan(figures.seconds_median));
+}
+
+TEST_F(BatchTest, ErrorsAreMeansOverTheInstancesThatHaveThem) {
+  folder_.Write("run/evaluation.json", R"({"ate": {"rmse": 0.5},
+    "background": {"accuracy": {"mean": 0.25},
+                   "completeness": {"mean": 0.125, "within": {"0.02": 0.75}}},
+    "tracks": {"visible": {"median": 0.0625, "mean": 0.375}},
+    "instances": [
+      {"surface": {"accuracy": {"mean": 0.5}},
+       "view": {"pixels": 200, "uncovered": 50, "distances": {"mean": 0.25}}},
+      {"surface": null,
+       "view": {"pixels": 8, "uncovered": 6, "distances": {"mean": 0.75}}},
+      {"surface": null, "view": null}]})");
+  const BatchFigures figures = ReadFigures(folder_ / "run");
+  EXPECT_EQ(figures.ate_rmse_m, 0.5);
+  EXPECT_EQ(figures.background_accuracy_m, 0.25);
+  EXPECT_EQ(figures.background_completeness, 0.75);
+  EXPECT_EQ(figures.objects_view_m, 0.5);
+  EXPECT_EQ(figures.objects_uncovered, 0.5);
+  EXPECT_EQ(figures.objects_accuracy_m, 0.5);
+  EXPECT_EQ(figures.track_median_m, 0.0625);
+  EXPECT_EQ(figures.track_mean_m, 0.375);
+}
+
+TEST_F(BatchTest, WithoutMovingTruthTheirErrorsAreUnknown) {
+  folder_.Write("run/evaluation.json",
+                R"({"ate": {"rmse": 0.5}, "background": null,
+                    "instances": [], "tracks": null})");
+  const BatchFigures figures = ReadFigures(folder_ / "run");
+  EXPECT_EQ(figures.ate_rmse_m, 0.5);
+  EXPECT_TRUE(std::isnan(figures.background_accuracy_m));
+  EXPECT_TRUE(std::isnan(figures.objects_view_m));
+  EXPECT_TRUE(std::isnan(figures.objects_uncovered));
+  EXPECT_TRUE(std::isnan(figures.objects_accuracy_m));
+  EXPECT_TRUE(std::isnan(figures.track_mean_m));
 }
 
 TEST_F(BatchTest, GroundTruthMayLieElsewhere) {
