@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "splitfusion/pipelines/split_fusion.h"
 #include "support/expect_input_error.h"
+#include "support/repository.h"
 #include "support/sample_depth.h"
 
 namespace splitfusion {
@@ -48,6 +52,13 @@ TEST(PipelineOptions, ThoseOfAllPartsAreChecked) {
                 "prior_anneal = 0");
   ExpectRefused([](PipelineOptions* o) { o->split.min_score = 2; },
                 "min_score = 2");
+}
+
+TEST(PipelineOptions, ThePaperMapStatesTheDefaultEnergy) {
+  std::ifstream stream(RepositoryRoot() / "docs/paper_map.md");
+  const std::string map{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_NE(map.find("`" + PipelineOptions().terms + "`"), std::string::npos)
+      << "docs/paper_map.md lacks `" << PipelineOptions().terms << "`";
 }
 
 TEST(PipelineOptions, CamerasAreCheckedToo) {
