@@ -44,18 +44,45 @@ double MeanFigure(const std::vector<double>& values) {
   return count > 0 ? sum / count : BatchFigures::kNone;
 }
 
+/// View error of an instance over all its pixels in all frames.
+struct PooledView {
+  double pixels = 0;   ///< Of the instance.
+  double covered = 0;  ///< Of these, with a model.
+  double sum = 0;      ///< Of the distances, metres.
+  double near = 0;     ///< Pixels with a model within 20 mm.
+};
+
+PooledView PoolView(const Json& instance) {
+  PooledView view;
+  if (!instance.contains("frames")) return view;
+  for (const Json& frame : instance["frames"]) {
+    const double pixels = Figure(frame, "/view/pixels");
+    const double covered = Figure(frame, "/view/distances/count");
+    const double mean = Figure(frame, "/view/distances/mean");
+    const double within = Figure(frame, "/view/distances/within/0.02");
+    if (!std::isfinite(pixels + covered + mean + within)) continue;
+    view.pixels += pixels;
+    view.covered += covered;
+    view.sum += covered * mean;
+    view.near += covered * within;
+  }
+  return view;
+}
+
 void ReadObjects(const Json& evaluation, BatchFigures* figures) {
-  std::vector<double> view, uncovered, accuracy;
+  std::vector<double> view, near, uncovered, accuracy;
   const Json instances = evaluation.is_object()
                              ? evaluation.value("instances", Json::array())
                              : Json::array();
   for (const Json& item : instances) {
-    view.push_back(Figure(item, "/view/distances/mean"));
-    uncovered.push_back(Figure(item, "/view/uncovered") /
-                        Figure(item, "/view/pixels"));
+    const PooledView pool = PoolView(item);
+    view.push_back(pool.sum / pool.covered);
+    near.push_back(pool.near / pool.pixels);
+    uncovered.push_back(1 - pool.covered / pool.pixels);
     accuracy.push_back(Figure(item, "/surface/accuracy/mean"));
   }
   figures->objects_view_m = MeanFigure(view);
+  figures->objects_right = MeanFigure(near);
   figures->objects_uncovered = MeanFigure(uncovered);
   figures->objects_accuracy_m = MeanFigure(accuracy);
 }

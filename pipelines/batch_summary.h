@@ -23,9 +23,11 @@ struct BatchFigures {
   double background_accuracy_m = kNone;
   /// Fraction of the true background that has a mesh within 20 mm.
   double background_completeness = kNone;
-  /// Mean view error, metres; this and the next two are means over the moving
-  /// instances that have the figure.
+  /// Mean view error over the pixels with a model, metres; this and the next
+  /// three are means over the moving instances that have the figure.
   double objects_view_m = kNone;
+  /// Fraction of the pixels at which the model is within 20 mm.
+  double objects_right = kNone;
   /// Fraction of the pixels of moving instances at which there is no model.
   double objects_uncovered = kNone;
   /// Mean distance of an instance's mesh to the true one, metres.
@@ -44,13 +46,14 @@ struct BatchColumn {
 };
 
 /// The figures in the order of the files.
-inline constexpr std::array<BatchColumn, 13> kBatchColumns = {{
+inline constexpr std::array<BatchColumn, 14> kBatchColumns = {{
     {"frames", &BatchFigures::frames},
     {"lost_frames", &BatchFigures::lost_frames},
     {"ate_rmse_m", &BatchFigures::ate_rmse_m},
     {"background_accuracy_m", &BatchFigures::background_accuracy_m},
     {"background_completeness", &BatchFigures::background_completeness},
     {"objects_view_m", &BatchFigures::objects_view_m},
+    {"objects_right", &BatchFigures::objects_right},
     {"objects_uncovered", &BatchFigures::objects_uncovered},
     {"objects_accuracy_m", &BatchFigures::objects_accuracy_m},
     {"track_median_m", &BatchFigures::track_median_m},

@@ -61,16 +61,16 @@ print_table() {
     NR == 1 {
       for (i = 1; i <= NF; ++i) from_end[$i] = NF - i
       print "| sequence | preset | ATE | background: error | complete |" \
-            " moving: view error | missing | surface error |" \
+            " moving: right | view error | missing | surface error |" \
             " track error, median | mean |"
-      print "|---|---|---|---|---|---|---|---|---|---|"
+      print "|---|---|---|---|---|---|---|---|---|---|---|"
       next
     }
     {
       print "| " $1 " | `" $2 "` | " mm("ate_rmse_m") \
             " | " mm("background_accuracy_m") \
             " | " percent("background_completeness") \
-            " | " mm("objects_view_m") \
+            " | " percent("objects_right") " | " mm("objects_view_m") \
             " | " percent("objects_uncovered") \
             " | " mm("objects_accuracy_m") \
             " | " mm("track_median_m") " | " mm("track_mean_m") " |"
@@ -103,7 +103,8 @@ status=0
 
 print_table | tee "$output/table.md"
 echo
-echo "Distances in mm; '-': there is none."
+echo "Distances in mm; '-': there is none. Right: pixels of moving instances" \
+  "with the model within 20 mm of the truth; missing: without a model."
 for sequence in "${sequences[@]}"; do
   name="$(basename "$(cd "$sequence" && pwd)")"
   write_pictures "$output/$name" composite

@@ -151,7 +151,7 @@ TEST_F(BatchTest, SummariesHoldTheTable) {
   EXPECT_EQ(json[1]["ate_rmse_m"], 0.0125);
   const std::string csv = folder_.Read("out/summary.csv");
   EXPECT_NE(
-      csv.find("/room/default,0,0,,10,1,0.0125,,,,,,,,0.5,0.75,1048576\n"),
+      csv.find("/room/default,0,0,,10,1,0.0125,,,,,,,,,0.5,0.75,1048576\n"),
       std::string::npos);
   const std::string table = FormatBatchTable(results);
   EXPECT_NE(table.find("0.0125"), std::string::npos);
@@ -212,17 +212,22 @@ TEST_F(BatchTest, ErrorsAreMeansOverTheInstancesThatHaveThem) {
                    "completeness": {"mean": 0.125, "within": {"0.02": 0.75}}},
     "tracks": {"visible": {"median": 0.0625, "mean": 0.375}},
     "instances": [
-      {"surface": {"accuracy": {"mean": 0.5}},
-       "view": {"pixels": 200, "uncovered": 50, "distances": {"mean": 0.25}}},
-      {"surface": null,
-       "view": {"pixels": 8, "uncovered": 6, "distances": {"mean": 0.75}}},
-      {"surface": null, "view": null}]})");
+      {"surface": {"accuracy": {"mean": 0.5}}, "frames": [
+        {"view": {"pixels": 100, "distances":
+          {"count": 50, "mean": 0.25, "within": {"0.02": 1}}}},
+        {"view": null},
+        {"view": {"pixels": 300, "distances":
+          {"count": 150, "mean": 0.75, "within": {"0.02": 0.5}}}}]},
+      {"surface": null, "frames": [{"view": {"pixels": 8, "distances":
+          {"count": 0, "mean": 0, "within": {"0.02": 0}}}}]},
+      {"surface": null, "frames": []}]})");
   const BatchFigures figures = ReadFigures(folder_ / "run");
   EXPECT_EQ(figures.ate_rmse_m, 0.5);
   EXPECT_EQ(figures.background_accuracy_m, 0.25);
   EXPECT_EQ(figures.background_completeness, 0.75);
-  EXPECT_EQ(figures.objects_view_m, 0.5);
-  EXPECT_EQ(figures.objects_uncovered, 0.5);
+  EXPECT_EQ(figures.objects_view_m, 0.625);   // By pixels; of one instance.
+  EXPECT_EQ(figures.objects_right, 0.15625);  // (125 / 400 + 0) / 2.
+  EXPECT_EQ(figures.objects_uncovered, 0.75);
   EXPECT_EQ(figures.objects_accuracy_m, 0.5);
   EXPECT_EQ(figures.track_median_m, 0.0625);
   EXPECT_EQ(figures.track_mean_m, 0.375);
@@ -236,6 +241,7 @@ TEST_F(BatchTest, WithoutMovingTruthTheirErrorsAreUnknown) {
   EXPECT_EQ(figures.ate_rmse_m, 0.5);
   EXPECT_TRUE(std::isnan(figures.background_accuracy_m));
   EXPECT_TRUE(std::isnan(figures.objects_view_m));
+  EXPECT_TRUE(std::isnan(figures.objects_right));
   EXPECT_TRUE(std::isnan(figures.objects_uncovered));
   EXPECT_TRUE(std::isnan(figures.objects_accuracy_m));
   EXPECT_TRUE(std::isnan(figures.track_mean_m));
