@@ -99,23 +99,43 @@ MeshRendering RenderMeshes(const SurfaceMap& surfaces,
   return rendering;
 }
 
+ModelMap RenderBackground(const SurfaceMap& surfaces,
+                          const PinholeCamera& camera, int stride,
+                          const RayCastOptions& options) {
+  const auto found = surfaces.find(0);
+  if (found == surfaces.end() || !found->second->is_ray_cast()) return {};
+  const Surface& background = *found->second;
+  return RayCast(background.volume(), MeanRigidMotion(background.graph()),
+                 camera.Subsampled(stride), options);
+}
+
 SurfacePrediction ToPrediction(const MeshRendering& rendering,
+                               const ModelMap& background,
                                const PinholeCamera& full) {
   LabelImage labels(rendering.camera.height, rendering.camera.width,
                     static_cast<std::uint16_t>(0));
+  cv::Mat_<float> depth = rendering.raster.depth.clone();
   for (int v = 0; v < labels.rows; ++v) {
     for (int u = 0; u < labels.cols; ++u) {
       const int triangle = rendering.raster.triangle(v, u);
       for (const auto& [id, first] : rendering.first_triangle) {
         if (triangle >= first) labels(v, u) = static_cast<std::uint16_t>(id);
       }
+      if (background.points.empty()) continue;
+      const float behind = background.points(v, u)[2];
+      if (!(behind > 0) || (depth(v, u) > 0 && depth(v, u) <= behind)) continue;
+      labels(v, u) = 0;
+      depth(v, u) = behind;
     }
   }
   SurfacePrediction prediction;
   const cv::Size size(full.width, full.height);
   cv::resize(labels, prediction.labels, size, 0, 0, cv::INTER_NEAREST);
-  cv::resize(rendering.raster.depth, prediction.depth, size, 0, 0,
-             cv::INTER_NEAREST);
+  cv::resize(depth, prediction.depth, size, 0, 0, cv::INTER_NEAREST);
+  if (!background.points.empty()) {
+    cv::extractChannel(background.points, depth, 2);
+    cv::resize(depth, prediction.background, size, 0, 0, cv::INTER_NEAREST);
+  }
   return prediction;
 }
 
@@ -160,17 +180,15 @@ std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
   return samples;
 }
 
-std::vector<ModelSample> RayCastSamples(const Surface& background,
-                                        const PinholeCamera& camera, int stride,
-                                        const RayCastOptions& options) {
-  const Rigid3d camera_from_canonical = MeanRigidMotion(background.graph());
+std::vector<ModelSample> BackgroundSamples(const ModelMap& cast,
+                                           const Rigid3d& camera_from_canonical,
+                                           int stride) {
+  if (cast.points.empty()) return {};
   const Rigid3f canonical_from_camera =
       camera_from_canonical.inverse().cast<float>();
-  const ModelMap cast = RayCast(background.volume(), camera_from_canonical,
-                                camera.Subsampled(stride), options);
   cv::Mat_<float> depth;
   cv::extractChannel(cast.points, depth, 2);
-  const PointMap map = ComputePointMap(depth, camera.Subsampled(stride));
+  const PointMap map = ComputePointMap(depth, cast.camera);
   const ModelGrey grey = SmoothGrey(cast.color, depth > 0, stride);
   std::vector<ModelSample> samples;
   for (int v = 0; v < depth.rows; ++v) {

@@ -34,8 +34,16 @@ struct MeshRendering {
 MeshRendering RenderMeshes(const SurfaceMap& surfaces,
                            const PinholeCamera& camera);
 
-/// Surface id and depth of every pixel of a rendering, resized to `full`.
+/// The rigid background, ray-cast under its current motion for every `stride`-th
+/// pixel of `camera`; empty if there is none.
+ModelMap RenderBackground(const SurfaceMap& surfaces,
+                          const PinholeCamera& camera, int stride,
+                          const RayCastOptions& options);
+
+/// Surface id and depth of every pixel of a rendering, the background (may be
+/// empty) behind it, resized to `full`.
 SurfacePrediction ToPrediction(const MeshRendering& rendering,
+                               const ModelMap& background,
                                const PinholeCamera& full);
 
 /// The visible points of one surface in a rendering of the full image's every
@@ -43,11 +51,11 @@ SurfacePrediction ToPrediction(const MeshRendering& rendering,
 std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
                                         const Surface& surface, int stride);
 
-/// The visible points of the rigid background, ray-cast under its current
-/// motion at every `stride`-th pixel of `camera`.
-std::vector<ModelSample> RayCastSamples(const Surface& background,
-                                        const PinholeCamera& camera, int stride,
-                                        const RayCastOptions& options);
+/// The visible points of the rigid background in its ray cast for every
+/// `stride`-th pixel; `camera_from_canonical` is the motion it was cast under.
+std::vector<ModelSample> BackgroundSamples(const ModelMap& cast,
+                                           const Rigid3d& camera_from_canonical,
+                                           int stride);
 
 /// All surfaces re-united in the camera frame (SplitFusion IV-D): what the
 /// camera sees of the model, and the surface id of every pixel.

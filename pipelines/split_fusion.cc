@@ -104,12 +104,15 @@ void SplitFusion::Split(const Frame& frame, FrameReport* report) {
   live_ = MakeLiveView(camera_, frame.depth, frame.color);
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
+  background_map_ = RenderBackground(surfaces_, camera_, options_.render_stride,
+                                     options_.ray_cast);
   report->render_seconds += stopwatch.Restart();
   if (segmenter_ == nullptr || !options_.split_scene) return;
   const std::vector<InstanceMask> detections = segmenter_->Segment(frame);
   report->segment_seconds = stopwatch.Restart();
-  SplitResult split = splitter_.Split(frame, live_.map, detections,
-                                      ToPrediction(rendering_, camera_));
+  SplitResult split =
+      splitter_.Split(frame, live_.map, detections,
+                      ToPrediction(rendering_, background_map_, camera_));
   live_.labels = split.labels;
   if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
   report->decisions = std::move(split.decisions);
@@ -124,8 +127,9 @@ void SplitFusion::TrackBackground(FrameReport* report) {
   surface.id = 0;
   const std::vector<ModelSample> samples =
       background.is_ray_cast()
-          ? RayCastSamples(background, camera_, options_.render_stride,
-                           options_.ray_cast)
+          ? BackgroundSamples(background_map_,
+                              MeanRigidMotion(background.graph()),
+                              options_.render_stride)
           : VisibleSamples(rendering_, background, options_.render_stride);
   surface.render_seconds = stopwatch.Restart();
   const Rigid3d predicted = MeanRigidMotion(background.graph());

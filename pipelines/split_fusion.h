@@ -102,6 +102,7 @@ class SplitFusion {
   Trajectory trajectory_;
   LiveView live_;
   MeshRendering rendering_;
+  ModelMap background_map_;
   /// Rigid motion of every surface over the last frame, in world (camera for
   /// the background): the constant-velocity prediction.
   std::map<int, Rigid3d> velocities_;

@@ -39,16 +39,22 @@ double ResidualRms(const std::vector<Correspondence>& correspondences,
   return correspondences.empty() ? 0 : std::sqrt(sum / correspondences.size());
 }
 
+/// Centroid of the warped samples, camera frame; the origin if there are none.
+Eigen::Vector3d CentroidOf(const std::vector<ModelSample>& samples,
+                           const DeformationGraph& graph) {
+  const WarpField warp(graph);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const ModelSample& sample : samples) {
+    sum += warp.WarpPoint(sample.skinning, sample.point).cast<double>();
+  }
+  return samples.empty() ? sum : sum / static_cast<double>(samples.size());
+}
+
 /// Translation that brings the centroid of the warped samples to that of the
 /// surface's live points.
 Rigid3d MotionOfCentroids(const std::vector<ModelSample>& samples,
                           const LiveView& live, std::uint16_t surface,
                           const DeformationGraph& graph) {
-  const WarpField warp(graph);
-  Eigen::Vector3d model = Eigen::Vector3d::Zero();
-  for (const ModelSample& sample : samples) {
-    model += warp.WarpPoint(sample.skinning, sample.point).cast<double>();
-  }
   Eigen::Vector3d seen = Eigen::Vector3d::Zero();
   int count = 0;
   for (int v = 0; v < live.depth.rows; ++v) {
@@ -61,8 +67,7 @@ Rigid3d MotionOfCentroids(const std::vector<ModelSample>& samples,
   }
   Rigid3d motion = Rigid3d::Identity();
   if (count > 0 && !samples.empty()) {
-    motion.translation() =
-        seen / count - model / static_cast<double>(samples.size());
+    motion.translation() = seen / count - CentroidOf(samples, graph);
   }
   return motion;
 }
@@ -201,8 +206,12 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
                                SurfaceReport* report) const {
   *graph = start;
   TrackRigid(samples, live, surface, graph, report);
-  const Rigid3d motion =
-      MeanRigidMotion(*graph) * MeanRigidMotion(start).inverse();
+  // The turn of a body far away must not count as a way travelled.
+  const Eigen::Vector3d pivot = surface == 0
+                                    ? Eigen::Vector3d::Zero().eval()
+                                    : CentroidOf(samples, start);
+  Rigid3d motion = MeanRigidMotion(*graph) * MeanRigidMotion(start).inverse();
+  motion.translation() = motion * pivot - pivot;
   report->reason = ReasonForLoss(motion, *report);
   if (report->reason.empty() && !graph->rigid()) {
     TrackNonRigid(samples, live, surface, graph, report);

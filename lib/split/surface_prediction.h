@@ -15,6 +15,9 @@ struct SurfacePrediction {
   LabelImage labels;      ///< HxW surface ids, 0 = background or nothing.
   cv::Mat_<float> depth;  ///< HxW z-depth of the rendered surface, metres; 0
                           ///< where nothing was rendered.
+  /// HxW z-depth of the background alone, behind the surfaces too, metres; 0 =
+  /// unknown. May be empty.
+  cv::Mat_<float> background;
 };
 
 }  // namespace splitfusion

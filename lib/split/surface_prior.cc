@@ -44,12 +44,13 @@ cv::Rect GrownBox(const cv::Mat& mask, int margin) {
 class Evidence {
  public:
   Evidence(const SurfaceObservation& observation, const cv::Rect& crop,
-           const LabelImage& labels, const cv::Mat_<uchar>& agreement,
-           const GraphCutOptions& cut, const PriorOptions& options)
+           const ComparedDepth& compared, const GraphCutOptions& cut,
+           const PriorOptions& options)
       : surface_(observation.surface),
         detected_(!observation.mask.empty()),
-        labels_(labels(crop)),
-        agreement_(agreement(crop)),
+        labels_(compared.labels(crop)),
+        agreement_(compared.agreement(crop)),
+        background_(compared.background(crop)),
         cut_(cut),
         options_(options) {
     if (detected_) mask_ = observation.mask(crop);
@@ -105,9 +106,12 @@ class Evidence {
     }
   }
 
-  /// Behind the projection lies either what the surface uncovered or, inside
-  /// of the detection, another part of the same surface.
+  /// Behind the projection lies either the background that the surface
+  /// uncovered, or another part of the same surface: in front of the
+  /// background, or inside of the detection.
   double MovedAwayWeight(int v, int u) const {
+    const auto background = static_cast<Agreement>(background_(v, u));
+    if (background == Agreement::kNearer) return -options_.unexplained_weight;
     if (!detected_) return 0.5 * options_.prediction_weight;
     return mask_(v, u) ? 0.0 : options_.prediction_weight;
   }
@@ -122,6 +126,7 @@ class Evidence {
   const bool detected_;
   const LabelImage labels_;
   const cv::Mat_<uchar> agreement_;
+  const cv::Mat_<uchar> background_;
   cv::Mat_<uchar> mask_;
   cv::Mat_<uchar> others_;
   cv::Mat_<float> support_;
@@ -148,22 +153,28 @@ void PriorOptions::Check() const {
               "positive metres");
 }
 
-cv::Mat_<uchar> CompareDepth(const cv::Mat& depth,
-                             const SurfacePrediction& prediction,
-                             const PriorOptions& options) {
-  cv::Mat_<uchar> agreement(depth.size());
+ComparedDepth CompareDepth(const cv::Mat& depth,
+                           const SurfacePrediction& prediction,
+                           const PriorOptions& options) {
+  ComparedDepth compared;
+  compared.labels = prediction.labels;
+  compared.agreement.create(depth.size());
+  compared.background.create(depth.size());
+  const bool has_background = !prediction.background.empty();
   tbb::parallel_for(0, depth.rows, [&](int v) {
     for (int u = 0; u < depth.cols; ++u) {
       const float live = depth.at<float>(v, u);
-      const double gate =
-          3 * DepthSigma(live) + (prediction.labels(v, u) > 0
-                                      ? options.surface_gate
-                                      : options.background_gate);
-      agreement(v, u) =
-          static_cast<uchar>(Compare(live, prediction.depth(v, u), gate));
+      const double noise = 3 * DepthSigma(live);
+      const double gate = prediction.labels(v, u) > 0 ? options.surface_gate
+                                                      : options.background_gate;
+      compared.agreement(v, u) = static_cast<uchar>(
+          Compare(live, prediction.depth(v, u), noise + gate));
+      compared.background(v, u) = static_cast<uchar>(
+          Compare(live, has_background ? prediction.background(v, u) : 0,
+                  noise + options.background_gate));
     }
   });
-  return agreement;
+  return compared;
 }
 
 cv::Mat_<uchar> AgreeingPixels(int surface, const LabelImage& predicted_labels,
@@ -173,14 +184,15 @@ cv::Mat_<uchar> AgreeingPixels(int surface, const LabelImage& predicted_labels,
 }
 
 SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,
-                               const LabelImage& predicted_labels,
-                               const cv::Mat_<uchar>& agreement,
+                               const ComparedDepth& compared,
                                const GraphCutOptions& cut,
                                const PriorOptions& options) {
-  const cv::Mat_<uchar> predicted =
+  cv::Mat_<uchar> predicted =
       observation.surface > 0
-          ? AgreeingPixels(observation.surface, predicted_labels, agreement)
-          : cv::Mat_<uchar>(agreement.size(), uchar(0));
+          ? AgreeingPixels(observation.surface, compared.labels,
+                           compared.agreement)
+          : cv::Mat_<uchar>(compared.agreement.size(), uchar(0));
+  if (!observation.extent.empty()) predicted |= observation.extent;
   const bool detected = !observation.mask.empty();
   const cv::Mat_<uchar> possible =
       detected ? cv::Mat_<uchar>(observation.mask | predicted) : predicted;
@@ -190,8 +202,7 @@ SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,
   cv::Mat reference =
       (detected ? observation.mask : predicted)(result.crop).clone();
   cv::morphologyEx(reference, reference, cv::MORPH_CLOSE, Disk(2));
-  const Evidence evidence(observation, result.crop, predicted_labels, agreement,
-                          cut, options);
+  const Evidence evidence(observation, result.crop, compared, cut, options);
   result.evidence = evidence.Compute(reference, possible(result.crop));
   return result;
 }

@@ -32,11 +32,17 @@ struct PriorOptions {
   void Check() const;
 };
 
-/// Compares live and predicted depth: HxW 8UC1 of Agreement. `depth`: HxW
-/// 32FC1, metres.
-cv::Mat_<uchar> CompareDepth(const cv::Mat& depth,
-                             const SurfacePrediction& prediction,
-                             const PriorOptions& options);
+/// The live depth compared with the prediction; all images HxW.
+struct ComparedDepth {
+  LabelImage labels;  ///< Predicted surface ids, 0 = background or nothing.
+  cv::Mat_<uchar> agreement;   ///< With the nearest surface, of Agreement.
+  cv::Mat_<uchar> background;  ///< With the background behind all surfaces.
+};
+
+/// Compares live and predicted depth. `depth`: HxW 32FC1, metres.
+ComparedDepth CompareDepth(const cv::Mat& depth,
+                           const SurfacePrediction& prediction,
+                           const PriorOptions& options);
 
 /// The observations about one surface in one frame; images are of frame size.
 struct SurfaceObservation {
@@ -46,6 +52,8 @@ struct SurfaceObservation {
   cv::Mat_<uchar> others;
   /// 0..1: how often recent detections covered the pixel; see MaskSupport.
   cv::Mat_<float> support;
+  /// 255 where a missed surface may have moved to; see GrowOverUnexplained.
+  cv::Mat_<uchar> extent;
 };
 
 /// Evidence for the graph cut.
@@ -59,8 +67,7 @@ struct SurfaceEvidence {
 /// with another one or with the background. Beyond the dilated mask and
 /// prediction the background is certain.
 SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,
-                               const LabelImage& predicted_labels,
-                               const cv::Mat_<uchar>& agreement,
+                               const ComparedDepth& compared,
                                const GraphCutOptions& cut,
                                const PriorOptions& options);
 

@@ -12,6 +12,7 @@
 #include "splitfusion/lib/split/detection_screen.h"
 #include "splitfusion/lib/split/instance_matcher.h"
 #include "splitfusion/lib/split/surface_contact.h"
+#include "splitfusion/lib/split/surface_extent.h"
 
 namespace splitfusion {
 namespace {
@@ -58,7 +59,7 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
   CheckSizes(frame, detections, prediction);
   ++frames_;
   Work work{frame, points, ComposePrior(prediction), {}, {}, {}, {}, {}};
-  work.agreement = CompareDepth(frame.depth, work.prior, options_.prior);
+  work.compared = CompareDepth(frame.depth, work.prior, options_.prior);
   CollectSegments(detections, &work);
   AddMissedSurfaces(&work);
   CutSegments(&work);
@@ -84,6 +85,8 @@ void SurfaceSplitter::CheckSizes(const Frame& frame,
   if (prediction.labels.empty()) return;
   CheckSize("predicted labels", prediction.labels, camera_);
   CheckSize("predicted depth", prediction.depth, camera_);
+  if (prediction.background.empty()) return;
+  CheckSize("predicted background", prediction.background, camera_);
 }
 
 SurfacePrediction SurfaceSplitter::ComposePrior(
@@ -91,9 +94,10 @@ SurfacePrediction SurfaceSplitter::ComposePrior(
   const cv::Size size(camera_.width, camera_.height);
   if (prediction.labels.empty()) {
     if (!last_.labels.empty()) return last_;
-    return {LabelImage(size, 0), cv::Mat_<float>(size, 0.0f)};
+    return {LabelImage(size, 0), cv::Mat_<float>(size, 0.0f), {}};
   }
-  SurfacePrediction prior{prediction.labels.clone(), prediction.depth.clone()};
+  SurfacePrediction prior{prediction.labels.clone(), prediction.depth.clone(),
+                          prediction.background};
   if (last_.labels.empty()) return prior;
   for (const int id : registry_.Matchable()) {
     if (registry_.at(id).dormant) continue;
@@ -112,7 +116,7 @@ void SurfaceSplitter::CollectSegments(
   MatchOptions match_options;
   match_options.min_iou = options_.min_match_iou;
   const std::vector<Match> matches =
-      MatchInstances(candidates, work->prior.labels, work->agreement,
+      MatchInstances(candidates, work->prior.labels, work->compared.agreement,
                      registry_.Matchable(), match_options);
   SortedDetections sorted = SortDetections(candidates, matches, table_,
                                            options_, work->frame.depth.size());
@@ -139,17 +143,34 @@ void SurfaceSplitter::CutSegments(Work* work) const {
   std::vector<Segment>& segments = work->segments;
   tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
     Segment& segment = segments[i];
-    const SurfaceObservation observation{
-        segment.surface, segment.mask, MasksOfOthers(i, *work),
-        support_.Predict(segment.surface, work->prior.labels)};
+    const SurfaceObservation observation =
+        Observe(segment, MasksOfOthers(i, *work), *work);
     segment.evidence =
-        GatherEvidence(observation, work->prior.labels, work->agreement,
-                       options_.graph_cut, options_.prior);
+        GatherEvidence(observation, work->compared, options_.graph_cut,
+                       options_.prior);
     if (segment.evidence.crop.area() == 0) return;
     segment.foreground =
         CutForeground(work->points, work->frame.color, segment.evidence.crop,
                       segment.evidence.evidence, options_.graph_cut);
   });
+}
+
+SurfaceObservation SurfaceSplitter::Observe(const Segment& segment,
+                                            const cv::Mat_<uchar>& others,
+                                            const Work& work) const {
+  const LabelImage& labels = work.prior.labels;
+  SurfaceObservation observation{segment.surface,
+                                 segment.mask,
+                                 others,
+                                 support_.Predict(segment.surface, labels),
+                                 {}};
+  if (segment.mask.empty()) {
+    observation.extent = GrowOverUnexplained(
+        segment.surface,
+        AgreeingPixels(segment.surface, labels, work.compared.agreement),
+        others, work.compared, work.frame.depth);
+  }
+  return observation;
 }
 
 cv::Mat_<uchar> SurfaceSplitter::MasksOfOthers(std::size_t index,
@@ -240,7 +261,7 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
   const int hits = births_.Add(work.frame.index, segment.mask);
   if (frames_ == 1 && segment.score >= options_.confident_score) return true;
   const cv::Mat mapped = pixels & (work.prior.labels == 0) &
-                         (work.agreement == static_cast<int>(Agreement::kSame));
+                         (work.compared.agreement == static_cast<int>(Agreement::kSame));
   const bool was_background =
       frames_ > kEarlyFrames &&
       2 * cv::countNonZero(mapped) > cv::countNonZero(pixels);
@@ -291,11 +312,11 @@ bool SurfaceSplitter::IsCovered(const Segment& part, int body_index,
     return false;
   }
   const Overlap overlap = ComputeOverlap(body.mask, part.surface,
-                                         work.prior.labels, work.agreement);
+                                         work.prior.labels, work.compared.agreement);
   const MatchOptions limits;
   if (overlap.covered * overlap.agreement < limits.min_contained) return false;
   const cv::Mat_<uchar> seen =
-      AgreeingPixels(part.surface, work.prior.labels, work.agreement);
+      AgreeingPixels(part.surface, work.prior.labels, work.compared.agreement);
   return ContactShare(work.points, seen,
                       PixelsOf(body_index, work.segment_labels)) >=
          options_.min_contact;
@@ -320,8 +341,13 @@ void SurfaceSplitter::DrawUncertain(Work* work) const {
                        work->unconfirmed,
                        MasksOfOthers(work->segments.size(), *work),
                        work->prior.labels.clone(),
-                       work->agreement,
+                       work->compared.agreement,
                        work->frame.depth};
+  // In front of the background and one with a surface: not background, though
+  // the cut did not give it to the surface.
+  input.unconfirmed |= GrowOverUnexplained(0, work->result.labels > 0, {},
+                                           work->compared, work->frame.depth) &
+                       (work->result.labels == 0);
   for (const auto& [id, instance] : registry_.instances()) {
     if (!instance.dormant) continue;
     input.predicted_labels.setTo(0, work->prior.labels == id);
@@ -338,7 +364,7 @@ void SurfaceSplitter::Remember(const Work& work) {
         ComputeAppearance(work.frame.color, work.points, pixels));
     support_.Update(segment.surface, pixels, segment.mask, work.prior.labels);
   }
-  last_ = {work.result.labels.clone(), work.frame.depth.clone()};
+  last_ = {work.result.labels.clone(), work.frame.depth.clone(), {}};
   last_.depth.setTo(0, work.result.uncertain);
 }
 

@@ -49,7 +49,7 @@ class SurfaceSplitter {
     const Frame& frame;
     const PointMap& points;
     SurfacePrediction prior;
-    cv::Mat_<uchar> agreement;
+    ComparedDepth compared;
     std::vector<Segment> segments;
     LabelImage segment_labels;    // 1 + index of the segment.
     cv::Mat_<uchar> unconfirmed;  // Detections that are no surface.
@@ -64,6 +64,9 @@ class SurfaceSplitter {
                        Work* work) const;
   void AddMissedSurfaces(Work* work) const;
   void CutSegments(Work* work) const;
+  SurfaceObservation Observe(const Segment& segment,
+                             const cv::Mat_<uchar>& others,
+                             const Work& work) const;
   cv::Mat_<uchar> MasksOfOthers(std::size_t index, const Work& work) const;
   void SettleSurfaces(Work* work);
   void SettleMissed(const Segment& segment, int pixels, Work* work);
