@@ -173,6 +173,17 @@ TEST(EvaluationOptions, RejectsNonsense) {
   EXPECT_THROW(options.Check(), InputError);
 }
 
+TEST_F(RunEvaluationTest, TruthInGtGoesBeforeATrajectoryBesideTheImages) {
+  std::filesystem::copy_file(folder_ / "sequence/gt/groundtruth.txt",
+                             folder_ / "sequence/groundtruth.txt");
+  const GroundTruth truth = ReadGroundTruth(folder_ / "sequence");
+  EXPECT_EQ(truth.folder, folder_ / "sequence/gt");
+  EXPECT_FALSE(truth.static_mesh.empty());
+  EXPECT_FALSE(truth.tracks.empty());
+  std::filesystem::remove(folder_ / "sequence/gt/groundtruth.txt");
+  EXPECT_TRUE(ReadGroundTruth(folder_ / "sequence").static_mesh.empty());
+}
+
 TEST(ReadGroundTruth, NeedsATrajectory) {
   const TemporaryFolder folder;
   try {
