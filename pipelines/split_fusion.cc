@@ -269,6 +269,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
     surface_report.label = surface.label();
     surface_report.kind = surface.kind();
     surface_report.nodes = surface.graph().size();
+    surface_report.node_spacing = surface.graph().node_spacing;
     surface_report.vertices = static_cast<int>(surface.mesh().vertices.size());
     const bool tracked = surface_report.state == "tracked";
     surface.RecordMotions(frame.index,

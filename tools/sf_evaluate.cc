@@ -1,11 +1,12 @@
-// Compares a run, a trajectory or a mesh with ground truth, and says where a
-// run carries surface points.
+// Compares a run with its live depth, a run, a trajectory or a mesh with ground
+// truth, and says where a run carries surface points.
 
 #include <gflags/gflags.h>
 
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -19,8 +20,8 @@
 
 DEFINE_string(run, "", "Directory of a run of sf_run.");
 DEFINE_string(ground_truth, "",
-              "With --run: folder with groundtruth.txt (or gt/groundtruth.txt)"
-              "; with --trajectory: a TUM file.");
+              "With --run: folder with gt/groundtruth.txt or groundtruth.txt; "
+              "with --trajectory: a TUM file.");
 DEFINE_string(trajectory, "", "TUM file to compare with --ground_truth.");
 DEFINE_string(mesh, "", "PLY to compare with --ground_truth_mesh.");
 DEFINE_string(ground_truth_mesh, "", "PLY of the truth, same frame.");
@@ -34,6 +35,8 @@ DEFINE_double(min_seen, 3,
 DEFINE_int32(label, -1,
              "Only triangles of the static truth with this vertex property "
              "label (0 = room without furniture); -1 = all.");
+DEFINE_int32(depth_every, 10,
+             "Model against live depth in every n-th frame; 0 = not.");
 DEFINE_string(track_query, "",
               "CSV id,frame,x,y,z (camera frame, m): points of one frame to "
               "follow through --run.");
@@ -47,8 +50,8 @@ namespace splitfusion {
 namespace {
 
 constexpr char kUsage[] =
-    "Compares results with ground truth; one of\n"
-    "  sf_evaluate --run=RUN --ground_truth=DIR\n"
+    "Compares results with live depth and ground truth; one of\n"
+    "  sf_evaluate --run=RUN [--ground_truth=DIR]\n"
     "  sf_evaluate --run=RUN --track_query=CSV --track_output=CSV\n"
     "  sf_evaluate --trajectory=FILE --ground_truth=FILE\n"
     "  sf_evaluate --mesh=PLY --ground_truth_mesh=PLY\n";
@@ -62,6 +65,7 @@ EvaluationOptions OptionsFromFlags() {
   if (FLAGS_label >= 0) options.surface.label = FLAGS_label;
   options.track_frame = FLAGS_track_frame;
   options.track_frames = FLAGS_track_frames;
+  options.depth_every = FLAGS_depth_every;
   options.Check();
   return options;
 }
@@ -108,10 +112,13 @@ void FollowQueries(const RecordedRun& run,
 void EvaluateRunDirectory(const EvaluationOptions& options) {
   RecordedRun run = ReadRun(FLAGS_run);
   const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
-  if (!FLAGS_track_query.empty()) FollowQueries(run, surfaces, options);
-  if (FLAGS_ground_truth.empty()) return;
-  const RunEvaluation evaluation =
-      EvaluateRun(run, surfaces, ReadGroundTruth(FLAGS_ground_truth), options);
+  std::optional<GroundTruth> truth;
+  if (!FLAGS_ground_truth.empty()) truth = ReadGroundTruth(FLAGS_ground_truth);
+  if (!FLAGS_track_query.empty()) {
+    FollowQueries(run, surfaces, options);
+    if (!truth) return;
+  }
+  const RunEvaluation evaluation = EvaluateRun(run, surfaces, truth, options);
   Publish(FormatTable(evaluation), ToJson(evaluation),
           (std::filesystem::path(FLAGS_run) / "evaluation.json").string());
 }
@@ -129,9 +136,6 @@ void CheckUsage() {
           "--track_query and --track_output go together");
   require(!given(FLAGS_track_query) || given(FLAGS_run),
           "--track_query needs --run");
-  require(!given(FLAGS_run) || given(FLAGS_ground_truth) ||
-              given(FLAGS_track_query),
-          "--run needs --ground_truth or --track_query");
   require(!given(FLAGS_trajectory) || given(FLAGS_ground_truth),
           "--trajectory needs --ground_truth");
   require(given(FLAGS_mesh) == given(FLAGS_ground_truth_mesh),

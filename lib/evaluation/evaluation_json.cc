@@ -92,6 +92,25 @@ Json TracksJson(const TrackEvaluation& tracks) {
   return json;
 }
 
+/// The keys of a trajectory error, all null if there is none.
+Json TrajectoryJson(const std::optional<TrajectoryError>& error) {
+  Json json = ToJson(error.value_or(TrajectoryError()));
+  if (error) return json;
+  for (Json& value : json) value = nullptr;
+  return json;
+}
+
+Json DepthJson(const DepthAgreement& agreement) {
+  return {{"surface_id", agreement.surface_id},
+          {"surface_label", agreement.surface_label},
+          {"frames", agreement.frames},
+          {"pixels", agreement.pixels},
+          {"uncovered", agreement.uncovered},
+          {"other_surface", agreement.other_surface},
+          {"uncovered_fraction", agreement.UncoveredFraction()},
+          {"distances", StatisticsJson(agreement.distances)}};
+}
+
 }  // namespace
 
 Json ToJson(const TrajectoryError& error) {
@@ -124,13 +143,19 @@ Json ToJson(const RunEvaluation& evaluation) {
   for (const InstanceError& item : evaluation.instances) {
     instances.push_back(InstanceJson(item));
   }
-  Json json = {{"run", evaluation.run},
-               {"ground_truth", evaluation.ground_truth}};
-  json.update(ToJson(evaluation.trajectory));
+  Json depth = Json::array();
+  for (const DepthAgreement& item : evaluation.depth) {
+    depth.push_back(DepthJson(item));
+  }
+  Json json = {{"run", evaluation.run}};
+  json["ground_truth"] =
+      evaluation.trajectory ? Json(evaluation.ground_truth) : Json();
+  json.update(TrajectoryJson(evaluation.trajectory));
   json["background"] =
       evaluation.background ? ToJson(*evaluation.background) : Json();
   json["instances"] = instances;
   json["tracks"] = evaluation.tracks ? TracksJson(*evaluation.tracks) : Json();
+  json["depth_agreement"] = depth;
   json["skipped"] = evaluation.skipped;
   return json;
 }

@@ -120,6 +120,38 @@ std::string TrackTable(const TrackEvaluation& tracks) {
   return text;
 }
 
+std::string DepthTable(const std::vector<DepthAgreement>& surfaces) {
+  std::string text = Head("model - live depth [mm, fraction]",
+                          {"median", "p90", "missing", "frames"});
+  for (const DepthAgreement& item : surfaces) {
+    text += Padded(std::to_string(item.surface_id) + " " + item.surface_label) +
+            Number(item.distances.median * kMillimetres, "%9.2f") +
+            Number(item.distances.p90 * kMillimetres, "%9.2f") +
+            Number(item.UncoveredFraction(), "%9.4f") +
+            Number(item.frames, "%9.0f") + "\n";
+  }
+  return text;
+}
+
+/// Surfaces against the truth; empty if there are none.
+std::string SurfaceTable(const RunEvaluation& evaluation) {
+  if (!evaluation.background && evaluation.instances.empty()) return "";
+  std::string text = SurfaceHead();
+  if (evaluation.background) {
+    text += SurfaceRows("background", *evaluation.background);
+  }
+  for (const InstanceError& instance : evaluation.instances) {
+    text += InstanceRows(instance);
+  }
+  return text;
+}
+
+std::string SkippedLines(const std::vector<std::string>& skipped) {
+  std::string text;
+  for (const std::string& item : skipped) text += "skipped: " + item + "\n";
+  return text;
+}
+
 }  // namespace
 
 std::string FormatTable(const TrajectoryError& error) {
@@ -144,21 +176,16 @@ std::string FormatTable(const std::string& name, const SurfaceError& error) {
 }
 
 std::string FormatTable(const RunEvaluation& evaluation) {
-  std::string text = FormatTable(evaluation.trajectory);
-  if (evaluation.background || !evaluation.instances.empty()) {
-    text += "\n" + SurfaceHead();
-  }
-  if (evaluation.background) {
-    text += SurfaceRows("background", *evaluation.background);
-  }
-  for (const InstanceError& instance : evaluation.instances) {
-    text += InstanceRows(instance);
-  }
-  if (evaluation.tracks) text += "\n" + TrackTable(*evaluation.tracks);
-  if (!evaluation.skipped.empty()) text += "\n";
-  for (const std::string& item : evaluation.skipped) {
-    text += "skipped: " + item + "\n";
-  }
+  std::string text;
+  const auto add = [&text](const std::string& table) {
+    if (!text.empty() && !table.empty()) text += "\n";
+    text += table;
+  };
+  if (evaluation.trajectory) add(FormatTable(*evaluation.trajectory));
+  add(SurfaceTable(evaluation));
+  if (evaluation.tracks) add(TrackTable(*evaluation.tracks));
+  if (!evaluation.depth.empty()) add(DepthTable(evaluation.depth));
+  add(SkippedLines(evaluation.skipped));
   return text;
 }
 

@@ -59,8 +59,9 @@ std::map<int, std::string> ReadNames(const std::string& path) {
 }  // namespace
 
 GroundTruth ReadGroundTruth(const std::string& folder) {
-  fs::path root(folder);
-  if (!fs::exists(root / "groundtruth.txt")) root /= "gt";
+  // A sequence may have its trajectory in both, meshes and tracks in gt alone.
+  fs::path root = fs::path(folder) / "gt";
+  if (!fs::exists(root / "groundtruth.txt")) root = folder;
   if (!fs::exists(root / "groundtruth.txt")) {
     throw InputError(folder +
                      ": expected a folder with groundtruth.txt (or "

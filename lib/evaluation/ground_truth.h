@@ -27,7 +27,8 @@ struct GroundTruth {
   std::map<int, std::string> names;  ///< Instance -> name, of labels.json.
 };
 
-/// Finds ground truth in `folder` or its subfolder `gt`.
+/// Finds ground truth in the subfolder `gt` of `folder` if that has a
+/// groundtruth.txt, or else in `folder` itself.
 ///
 /// @throw InputError if neither has a groundtruth.txt, or if it or labels.json
 ///     is broken.

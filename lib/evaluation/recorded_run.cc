@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/sequence/calibration.h"
@@ -66,16 +67,33 @@ std::string FlagValue(const std::string& path, const std::string& name) {
   return "";
 }
 
-std::optional<PinholeCamera> FindCamera(const fs::path& root) {
-  std::optional<Calibration> found = FindCalibration(root.string());
-  const std::string flags = (root / "options.flags").string();
-  const std::string sequence = FlagValue(flags, "sequence");
-  // Intrinsics of the command line overrule those beside the sequence.
-  if (!found && !sequence.empty() && FlagValue(flags, "intrinsics").empty()) {
-    found = FindCalibration(sequence);
+/// Replaces `value` by that of a flag if the flagfile has it.
+void ReadNumberFlag(const std::string& path, const std::string& name,
+                    double* value) {
+  const std::string text = FlagValue(path, name);
+  if (text.empty()) return;
+  std::istringstream stream(text);
+  if (!(stream >> *value) || !stream.eof()) {
+    throw InputError(path + ": --" + name + "=" + text + ": expected a number");
   }
-  if (!found) return std::nullopt;
-  return found->camera;
+}
+
+/// Sets the sequence, and how it is read, from the files of the run.
+void ReadSource(const fs::path& root, RecordedRun* run) {
+  const std::string flags = (root / "options.flags").string();
+  run->sequence = FlagValue(flags, "sequence");
+  TumReaderOptions& reading = run->reading;
+  ReadNumberFlag(flags, "depth_scale", &reading.depth_scale);
+  ReadNumberFlag(flags, "min_depth", &reading.depth_filter.min_depth);
+  ReadNumberFlag(flags, "max_depth", &reading.depth_filter.max_depth);
+  std::optional<Calibration> found = FindCalibration(root.string());
+  if (found) {
+    reading.depth_scale = found->depth_scale;
+  } else if (!run->sequence.empty() && FlagValue(flags, "intrinsics").empty()) {
+    // Intrinsics of the command line overrule those beside the sequence.
+    found = FindCalibration(run->sequence);
+  }
+  if (found) run->camera = reading.camera = found->camera;
 }
 
 std::vector<RecordedSurface> ReadSurfaces(const fs::path& folder) {
@@ -156,7 +174,7 @@ RecordedRun ReadRun(const std::string& root) {
   run.root = root;
   run.frames = FramesOfTrajectory((path / "trajectory.txt").string());
   ReadFrameLines((path / "frames.jsonl").string(), &run.frames);
-  run.camera = FindCamera(path);
+  ReadSource(path, &run);
   run.surfaces = ReadSurfaces(path / "surfaces");
   return run;
 }

@@ -11,6 +11,7 @@
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "splitfusion/lib/sequence/trajectory.h"
+#include "splitfusion/lib/sequence/tum_reader.h"
 
 namespace splitfusion {
 
@@ -40,6 +41,12 @@ struct RecordedRun {
   /// the run directory, or else beside the sequence that options.flags names
   /// (unless it has --intrinsics too).
   std::optional<PinholeCamera> camera;
+  /// Folder of the sequence, of options.flags; empty if that does not say.
+  std::string sequence;
+  /// How the run read the depth images of the sequence: depth scale of
+  /// `calibration.txt` or `camera.txt` in the run directory, or else of
+  /// options.flags; range of options.flags; the camera as above.
+  TumReaderOptions reading;
 
   /// The frame of an index; null if the run has none.
   const RecordedFrame* Find(int frame) const;

@@ -32,7 +32,7 @@ void EvaluateBackground(const std::vector<AnimatedSurface>& surfaces,
   } else {
     result->background = CompareSurfaces(
         Transformed(found->recorded().mesh,
-                    result->trajectory.truth_from_estimate_by_poses),
+                    result->trajectory->truth_from_estimate_by_poses),
         ReadTrueSurface(truth.static_mesh), options);
   }
 }
@@ -132,6 +132,33 @@ void EvaluateTracks(const RecordedRun& run,
                     followed.attached, followed.unattached, followed.by_mask};
 }
 
+void EvaluateDepth(const RecordedRun& run,
+                   const std::vector<AnimatedSurface>& surfaces, int every,
+                   RunEvaluation* result) {
+  if (every == 0) {
+    result->skipped.push_back("depth agreement: not asked for");
+    return;
+  }
+  try {
+    result->depth = CompareDepth(run, surfaces, every);
+  } catch (const InputError& error) {
+    result->skipped.push_back(std::string("depth agreement: ") + error.what());
+  }
+}
+
+void EvaluateAgainstTruth(const RecordedRun& run,
+                          const std::vector<AnimatedSurface>& surfaces,
+                          const GroundTruth& truth,
+                          const EvaluationOptions& options,
+                          RunEvaluation* result) {
+  result->ground_truth = truth.folder;
+  result->trajectory = CompareTrajectories(
+      run.EstimatedTrajectory(), truth.trajectory, options.trajectory);
+  EvaluateBackground(surfaces, truth, options.surface, result);
+  EvaluateInstances(run, surfaces, truth, options.surface, result);
+  EvaluateTracks(run, surfaces, truth, options, result);
+}
+
 }  // namespace
 
 void EvaluationOptions::Check() const {
@@ -141,21 +168,24 @@ void EvaluationOptions::Check() const {
   CheckOption(track_frame >= -1, "track_frame", track_frame,
               "a frame index, or -1");
   CheckOption(track_frames >= 1, "track_frames", track_frames, ">= 1");
+  CheckOption(depth_every >= 0, "depth_every", depth_every,
+              "a number of frames, or 0");
 }
 
 RunEvaluation EvaluateRun(const RecordedRun& run,
                           const std::vector<AnimatedSurface>& surfaces,
-                          const GroundTruth& truth,
+                          const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& options) {
   options.Check();
   RunEvaluation result;
   result.run = run.root;
-  result.ground_truth = truth.folder;
-  result.trajectory = CompareTrajectories(run.EstimatedTrajectory(),
-                                          truth.trajectory, options.trajectory);
-  EvaluateBackground(surfaces, truth, options.surface, &result);
-  EvaluateInstances(run, surfaces, truth, options.surface, &result);
-  EvaluateTracks(run, surfaces, truth, options, &result);
+  if (truth) {
+    EvaluateAgainstTruth(run, surfaces, *truth, options, &result);
+  } else {
+    result.skipped.push_back(
+        "trajectory, surfaces and tracks: no ground truth given");
+  }
+  EvaluateDepth(run, surfaces, options.depth_every, &result);
   return result;
 }
 

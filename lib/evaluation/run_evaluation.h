@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "splitfusion/lib/evaluation/animated_surface.h"
+#include "splitfusion/lib/evaluation/depth_agreement.h"
 #include "splitfusion/lib/evaluation/ground_truth.h"
 #include "splitfusion/lib/evaluation/instance_error.h"
 #include "splitfusion/lib/evaluation/point_follower.h"
@@ -16,7 +17,7 @@
 
 namespace splitfusion {
 
-/// How a run is compared with the truth.
+/// How a run is evaluated.
 struct EvaluationOptions {
   TrajectoryErrorOptions trajectory;  ///< ATE, RPE.
   SurfaceErrorOptions surface;        ///< Background and instances.
@@ -25,6 +26,8 @@ struct EvaluationOptions {
   /// them are visible (the first of these), `track_frames` before the end.
   int track_frame = -1;
   int track_frames = 30;  ///< Frames through which they are followed.
+  /// Depth agreement is measured in every n-th frame; 0 = not at all.
+  int depth_every = 10;
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
@@ -41,24 +44,27 @@ struct TrackEvaluation {
 /// All that a run can be measured by. What is empty was not known; `skipped`
 /// says why.
 struct RunEvaluation {
-  std::string run;             ///< The run directory.
-  std::string ground_truth;    ///< Folder of groundtruth.txt.
-  TrajectoryError trajectory;  ///< ATE, RPE, alignment.
+  std::string run;           ///< The run directory.
+  std::string ground_truth;  ///< Folder of groundtruth.txt; empty if none.
+  std::optional<TrajectoryError> trajectory;  ///< ATE, RPE, alignment.
   /// The background's mesh, put into the true world by
   /// TrajectoryError::truth_from_estimate_by_poses.
   std::optional<SurfaceError> background;
   std::vector<InstanceError> instances;   ///< By instance.
   std::optional<TrackEvaluation> tracks;  ///< Track error.
+  std::vector<DepthAgreement> depth;      ///< With the live depth; by id.
   std::vector<std::string> skipped;       ///< What was not evaluated, and why.
 };
 
-/// Evaluates a run without tracking again. `surfaces`: those of `run`.
+/// Evaluates a run without tracking again. `surfaces`: those of `run`; without
+/// `truth` by the depth agreement alone. That needs the sequence, which may be
+/// gone: what is wrong with it is a line of `skipped`.
 ///
 /// @throw InputError if fewer than three poses match, or if a file of the
 ///     ground truth is broken.
 RunEvaluation EvaluateRun(const RecordedRun& run,
                           const std::vector<AnimatedSurface>& surfaces,
-                          const GroundTruth& truth,
+                          const std::optional<GroundTruth>& truth,
                           const EvaluationOptions& options);
 
 }  // namespace splitfusion

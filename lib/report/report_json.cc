@@ -64,6 +64,7 @@ Json ToJson(const SurfaceReport& surface) {
           {"reason", surface.reason},
           {"pixels", surface.pixels},
           {"nodes", surface.nodes},
+          {"node_spacing", surface.node_spacing},
           {"vertices", surface.vertices},
           {"residual_rms", surface.residual_rms},
           {"rounds", rounds},

@@ -21,6 +21,7 @@ Json ToJson(const SurfaceSummary& surface) {
           {"first_frame", surface.first_frame},
           {"frames", surface.frames},
           {"nodes", surface.nodes},
+          {"node_spacing", surface.node_spacing},
           {"vertices", surface.vertices},
           {"lost", surface.lost}};
 }
@@ -70,7 +71,10 @@ void SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   surface.kind = report.kind;
   if (report.state == "tracked" || report.state == "born") ++surface.frames;
   if (report.state == "lost") surface.lost.push_back(frame);
-  if (report.nodes > 0) surface.nodes = report.nodes;
+  if (report.nodes > 0) {
+    surface.nodes = report.nodes;
+    surface.node_spacing = report.node_spacing;
+  }
   if (report.vertices > 0) surface.vertices = report.vertices;
 }
 

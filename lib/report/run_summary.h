@@ -19,10 +19,11 @@ struct SurfaceSummary {
   std::string label;                       ///< Class name; spaces kept.
   SurfaceKind kind = SurfaceKind::kRigid;  ///< Of its last report.
   int first_frame = 0;                     ///< Frame of its birth.
-  int frames = 0;         ///< Frames in which it was born or tracked.
-  int nodes = 0;          ///< Of the final graph.
-  int vertices = 0;       ///< Of the final mesh.
-  std::vector<int> lost;  ///< Frames whose solve failed.
+  int frames = 0;           ///< Frames in which it was born or tracked.
+  int nodes = 0;            ///< Of the final graph.
+  double node_spacing = 0;  ///< Of the final graph, metres; 0 if rigid.
+  int vertices = 0;         ///< Of the final mesh.
+  std::vector<int> lost;    ///< Frames whose solve failed.
 };
 
 /// What `summary.json` holds.

@@ -33,13 +33,17 @@ class RunEvaluationTest : public ::testing::Test {
     std::filesystem::create_directories(folder_ / "run");
     plate_.WriteRun(folder_ / "run");
     plate_.WriteGroundTruth(folder_ / "sequence/gt");
+    plate_.WriteSequence(folder_ / "sequence", folder_ / "run");
   }
 
   RunEvaluation Evaluate() const {
+    return Evaluate(ReadGroundTruth(folder_ / "sequence"));
+  }
+
+  RunEvaluation Evaluate(const std::optional<GroundTruth>& truth) const {
     RecordedRun run = ReadRun(folder_ / "run");
     const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
-    return EvaluateRun(run, surfaces, ReadGroundTruth(folder_ / "sequence"),
-                       options_);
+    return EvaluateRun(run, surfaces, truth, options_);
   }
 
   void Remove(const std::string& name) const {
@@ -53,9 +57,10 @@ class RunEvaluationTest : public ::testing::Test {
 
 TEST_F(RunEvaluationTest, PerfectRunHasNoErrors) {
   const RunEvaluation evaluation = Evaluate();
-  EXPECT_EQ(evaluation.trajectory.matched, 12);
-  EXPECT_LT(evaluation.trajectory.absolute.max, 1e-6);
-  EXPECT_TRUE(evaluation.trajectory.truth_from_estimate_by_poses.isApprox(
+  ASSERT_TRUE(evaluation.trajectory);
+  EXPECT_EQ(evaluation.trajectory->matched, 12);
+  EXPECT_LT(evaluation.trajectory->absolute.max, 1e-6);
+  EXPECT_TRUE(evaluation.trajectory->truth_from_estimate_by_poses.isApprox(
       BentPlate::TrueWorldFromWorld(), 1e-4));
   ASSERT_TRUE(evaluation.background);
   EXPECT_LT(evaluation.background->accuracy.statistics.max, 1e-4);
@@ -136,6 +141,35 @@ TEST_F(RunEvaluationTest, TracksOfAFrameBeyondTheTruthAreSkipped) {
               Contains("track error: frame 50 is not in the run"));
 }
 
+TEST_F(RunEvaluationTest, WithoutTruthTheDepthAgreementIsLeft) {
+  const RunEvaluation evaluation = Evaluate(std::nullopt);
+  EXPECT_EQ(evaluation.depth.size(), 2u);
+  EXPECT_THAT(evaluation.skipped,
+              testing::ElementsAre(HasSubstr("no ground truth")));
+  const auto json = ToJson(evaluation);
+  EXPECT_TRUE(json.at("ground_truth").is_null());
+  EXPECT_TRUE(json.at("ate").is_null());
+  EXPECT_THAT(FormatTable(evaluation),
+              testing::StartsWith("model - live depth"));
+}
+
+TEST_F(RunEvaluationTest, WithoutTheSequenceTheTruthIsLeft) {
+  const GroundTruth truth = ReadGroundTruth(folder_ / "sequence");
+  for (const std::string name : {"run/masks", "sequence/depth"}) {
+    Remove(name);
+    const RunEvaluation evaluation = Evaluate(truth);
+    EXPECT_TRUE(evaluation.depth.empty());
+    EXPECT_TRUE(evaluation.background);
+    EXPECT_THAT(evaluation.skipped,
+                testing::ElementsAre(
+                    testing::AllOf(testing::StartsWith("depth agreement: "),
+                                   HasSubstr(name + "/stem0.png"))));
+  }
+  options_.depth_every = 0;
+  EXPECT_THAT(Evaluate(truth).skipped,
+              Contains("depth agreement: not asked for"));
+}
+
 TEST_F(RunEvaluationTest, IsRepeatable) {
   EXPECT_EQ(ToJson(Evaluate()), ToJson(Evaluate()));
 }
@@ -163,6 +197,9 @@ TEST_F(RunEvaluationTest, EveryJsonKeyIsDocumented) {
 
 TEST(EvaluationOptions, RejectsNonsense) {
   EvaluationOptions options;
+  options.depth_every = -1;
+  EXPECT_THROW(options.Check(), InputError);
+  options = {};
   options.track_frames = 0;
   EXPECT_THROW(options.Check(), InputError);
   options = {};
@@ -171,6 +208,17 @@ TEST(EvaluationOptions, RejectsNonsense) {
   options = {};
   options.trajectory.relative_frames = {1, -1};
   EXPECT_THROW(options.Check(), InputError);
+}
+
+TEST_F(RunEvaluationTest, TruthInGtGoesBeforeATrajectoryBesideTheImages) {
+  std::filesystem::copy_file(folder_ / "sequence/gt/groundtruth.txt",
+                             folder_ / "sequence/groundtruth.txt");
+  const GroundTruth truth = ReadGroundTruth(folder_ / "sequence");
+  EXPECT_EQ(truth.folder, folder_ / "sequence/gt");
+  EXPECT_FALSE(truth.static_mesh.empty());
+  EXPECT_FALSE(truth.tracks.empty());
+  std::filesystem::remove(folder_ / "sequence/gt/groundtruth.txt");
+  EXPECT_TRUE(ReadGroundTruth(folder_ / "sequence").static_mesh.empty());
 }
 
 TEST(ReadGroundTruth, NeedsATrajectory) {

@@ -62,6 +62,20 @@ TEST(Presets, DynamicFusionIsOneNonRigidSurface) {
   EXPECT_EQ(KindsOf("dynamicfusion"), std::vector<std::string>{"non_rigid"});
 }
 
+TEST(Presets, SceneThatNeedsManyNodesGetsAWiderSpacingAndSaysSo) {
+  PipelineOptions options;
+  ApplyPreset("dynamicfusion", &options);
+  options.background.graph.max_nodes = 150;
+  SyntheticRun run(SyntheticRun::Quick(), options);
+  const FrameReport report = run.Next();
+  ASSERT_EQ(report.surfaces.size(), 1u);
+  EXPECT_LE(report.surfaces[0].nodes, 150);
+  EXPECT_GT(report.surfaces[0].node_spacing,
+            2 * options.background.graph.far_spacing);
+  EXPECT_EQ(report.surfaces[0].node_spacing,
+            run.fusion().surfaces().at(0)->graph().node_spacing);
+}
+
 TEST(Presets, BackgroundOnlyModelsNothingElse) {
   EXPECT_EQ(KindsOf("background_only"), std::vector<std::string>{"rigid"});
 }

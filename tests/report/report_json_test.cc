@@ -32,6 +32,7 @@ TEST(ReportJson, HoldsSurfacesAndRounds) {
   EXPECT_EQ(surface["label"], "teddy bear");
   EXPECT_EQ(surface["kind"], "non_rigid");
   EXPECT_EQ(surface["nodes"], 120);
+  EXPECT_EQ(surface["node_spacing"], 0.03);
   const auto& round = surface["rounds"][0];
   EXPECT_EQ(round["stage"], "rigid");
   EXPECT_EQ(round["association"]["accepted"], 1000);

@@ -54,6 +54,22 @@ TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
   EXPECT_EQ(person.lost, std::vector<int>{3});
 }
 
+TEST(SummaryBuilder, TakesTheSpacingOfTheLastGraph) {
+  SummaryBuilder builder;
+  for (const double spacing : {0.04, 0.05}) {
+    FrameReport report = SampleReport(0);
+    report.surfaces[1].node_spacing = spacing;
+    builder.Add(report);
+  }
+  FrameReport dropped = SampleReport(2);
+  dropped.surfaces[1].nodes = 0;
+  dropped.surfaces[1].node_spacing = 0;
+  builder.Add(dropped);
+  const auto json = ToJson(builder.Build());
+  EXPECT_EQ(json["surfaces"][0]["node_spacing"], 0.0);  // Rigid.
+  EXPECT_EQ(json["surfaces"][1]["node_spacing"], 0.05);
+}
+
 TEST(SummaryBuilder, TakesTheSizesThatWereWritten) {
   SummaryBuilder builder;
   builder.Add(SampleReport(0));

@@ -134,16 +134,43 @@ void WriteTracks(const fs::path& path, const BentPlate& plate) {
   }
 }
 
-void WriteLabel(const std::string& path, const BentPlate& plate, int frame) {
-  const Rigid3d camera_from_world = plate.WorldFromCamera(frame).inverse();
-  const TriangleMesh mesh = Moved(plate.PlateAt(frame), camera_from_world);
+/// Adds a mesh (world of the run) to what the camera sees in a frame.
+void Render(const BentPlate& plate, const TriangleMesh& mesh, int frame,
+            Raster* raster) {
+  const TriangleMesh seen = Moved(mesh, plate.WorldFromCamera(frame).inverse());
+  RasterizeTriangles(seen.vertices, seen.triangles, BentPlate::Camera(), false,
+                     0, raster);
+}
+
+/// HxW 8UC1, 1 where the plate is, and the depth of plate and wall, metres.
+cv::Mat RenderScene(const BentPlate& plate, int frame, cv::Mat* depth) {
   Raster raster;
   raster.Clear(BentPlate::Camera());
-  RasterizeTriangles(mesh.vertices, mesh.triangles, BentPlate::Camera(), false,
-                     0, &raster);
+  Render(plate, plate.PlateAt(frame), frame, &raster);
   cv::Mat labels = raster.depth > 0;
   labels /= 255;
-  cv::imwrite(path, labels);
+  Render(plate, BentPlate::Wall(), frame, &raster);
+  raster.depth.copyTo(*depth);
+  return labels;
+}
+
+void WriteLabel(const std::string& path, const BentPlate& plate, int frame) {
+  cv::Mat depth;
+  cv::imwrite(path, RenderScene(plate, frame, &depth));
+}
+
+/// Images of one frame, and its mask.
+void WriteFrame(const fs::path& folder, const fs::path& run,
+                const BentPlate& plate, int frame) {
+  const std::string name = BentPlate::Stem(frame) + ".png";
+  cv::Mat depth;
+  cv::Mat labels = RenderScene(plate, frame, &depth);
+  labels.convertTo(labels, CV_16U);
+  cv::imwrite((run / "masks" / name).string(), labels);
+  cv::imwrite((folder / "rgb" / name).string(),
+              cv::Mat::zeros(depth.size(), CV_8UC3));
+  depth.convertTo(depth, CV_16U, 5000);
+  cv::imwrite((folder / "depth" / name).string(), depth);
 }
 
 Trajectory TrajectoryOf(const BentPlate& plate, const Rigid3d& world_motion) {
@@ -238,6 +265,23 @@ void BentPlate::WriteGroundTruth(const std::string& folder) const {
     WriteLabel((root / "label" / (Stem(f) + ".png")).string(), *this, f);
   }
   WriteTracks(root / "tracks.bin", *this);
+}
+
+void BentPlate::WriteSequence(const std::string& folder,
+                              const std::string& run) const {
+  const fs::path root(folder);
+  fs::create_directories(root / "rgb");
+  fs::create_directories(root / "depth");
+  fs::create_directories(fs::path(run) / "masks");
+  std::ofstream list(root / "associations.txt");
+  list.precision(12);
+  for (int f = 0; f < frames; ++f) {
+    WriteFrame(root, run, *this, f);
+    list << Timestamp(f) << " rgb/" << Stem(f) << ".png " << Timestamp(f)
+         << " depth/" << Stem(f) << ".png\n";
+  }
+  std::ofstream(fs::path(run) / "options.flags")
+      << "--max_depth=5\n--min_depth=0.4\n--sequence=" << folder << '\n';
 }
 
 }  // namespace splitfusion

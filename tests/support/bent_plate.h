@@ -47,6 +47,10 @@ struct BentPlate {
   /// 6), label/ (the same) and tracks.bin (a grid of 5 x 5 points, visible in
   /// all frames).
   void WriteGroundTruth(const std::string& folder) const;
+  /// Writes what the camera sees as a sequence in TUM layout (depth without
+  /// noise, colour black), and into the run directory its masks and an
+  /// options.flags that names it.
+  void WriteSequence(const std::string& folder, const std::string& run) const;
 };
 
 }  // namespace splitfusion

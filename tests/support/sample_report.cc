@@ -37,6 +37,7 @@ SurfaceReport SampleSurface(int id, const std::string& label,
   surface.state = "tracked";
   surface.pixels = 5000;
   surface.nodes = kind == SurfaceKind::kRigid ? 1 : 120;
+  surface.node_spacing = kind == SurfaceKind::kRigid ? 0 : 0.03;
   surface.vertices = 9000;
   surface.residual_rms = 0.003;
   TrackingRound round;

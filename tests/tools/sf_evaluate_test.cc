@@ -60,6 +60,20 @@ TEST_F(SfEvaluate, WritesTheEvaluationOfARun) {
   EXPECT_LT(json["tracks"]["visible"]["max"], 0.001);
 }
 
+TEST_F(SfEvaluate, NeedsNoTruthToCompareTheModelWithTheLiveDepth) {
+  const std::string arguments = "--depth_every=3 --run=" + (folder_ / "run");
+  ProgramResult result = Run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("options.flags: no --sequence"));
+  BentPlate().WriteSequence(folder_ / "sequence", folder_ / "run");
+  result = Run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("1 thin_plate"));
+  const auto json = nlohmann::json::parse(folder_.Read("run/evaluation.json"));
+  EXPECT_EQ(json["depth_agreement"][1]["frames"], 4);
+  EXPECT_LT(json["depth_agreement"][1]["distances"]["median"], 0.0005);
+}
+
 TEST_F(SfEvaluate, FollowsQueryPoints) {
   folder_.Write("q.csv", "id,frame,x,y,z\n0,0,0.1,0,1\n4,0,0,0,0.5\n");
   const ProgramResult result =
@@ -93,7 +107,8 @@ TEST_F(SfEvaluate, BadUsageAndInputEndWithTwoAndOneLine) {
   ExpectRefused("--flagfile=/no/such/file", "/no/such/file");
   ExpectRefused("run", "argument 'run': expected flags only");
   ExpectRefused("--run=/no/such/run --ground_truth=x", "/no/such/run");
-  ExpectRefused("--run=" + (folder_ / "run"), "--run needs --ground_truth");
+  ExpectRefused("--depth_every=-1 --run=" + (folder_ / "run"),
+                "depth_every = -1");
   ExpectRefused("--trajectory=a --ground_truth=b", "a: cannot be opened");
   ExpectRefused("--mesh=a.ply", "go together");
   folder_.Write("empty.txt", "# nothing\n");
