@@ -77,17 +77,14 @@ ModelGrey SmoothGrey(const cv::Mat_<cv::Vec3b>& color, const cv::Mat& mask,
 
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
-}  // namespace
-
-MeshRendering RenderMeshes(const SurfaceMap& surfaces,
-                           const PinholeCamera& camera) {
+MeshRendering Render(const std::vector<const Surface*>& surfaces,
+                     const PinholeCamera& camera) {
   MeshRendering rendering;
   rendering.camera = camera;
   rendering.raster.Clear(camera);
   int first = 0;
-  for (const auto& [id, surface] : surfaces) {
-    if (surface->is_ray_cast() || surface->dormant()) continue;
-    rendering.first_triangle[id] = first;
+  for (const Surface* surface : surfaces) {
+    rendering.first_triangle[surface->id()] = first;
     RasterizeTriangles(surface->WarpedVertices(), surface->mesh().triangles,
                        camera, /*cull_back_faces=*/true, first,
                        &rendering.raster);
@@ -97,6 +94,23 @@ MeshRendering RenderMeshes(const SurfaceMap& surfaces,
     rendering.normals = ComputePointMap(rendering.raster.depth, camera).normals;
   }
   return rendering;
+}
+
+}  // namespace
+
+MeshRendering RenderMeshes(const SurfaceMap& surfaces,
+                           const PinholeCamera& camera) {
+  std::vector<const Surface*> drawn;
+  for (const auto& [id, surface] : surfaces) {
+    if (!surface->is_ray_cast() && !surface->dormant()) {
+      drawn.push_back(surface.get());
+    }
+  }
+  return Render(drawn, camera);
+}
+
+MeshRendering RenderAlone(const Surface& surface, const PinholeCamera& camera) {
+  return Render({&surface}, camera);
 }
 
 ModelMap RenderBackground(const SurfaceMap& surfaces,

@@ -34,6 +34,9 @@ struct MeshRendering {
 MeshRendering RenderMeshes(const SurfaceMap& surfaces,
                            const PinholeCamera& camera);
 
+/// Renders one surface as if no other hid it.
+MeshRendering RenderAlone(const Surface& surface, const PinholeCamera& camera);
+
 /// The rigid background, ray-cast under its current motion for every `stride`-th
 /// pixel of `camera`; empty if there is none.
 ModelMap RenderBackground(const SurfaceMap& surfaces,

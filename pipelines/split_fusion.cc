@@ -1,7 +1,9 @@
 #include "splitfusion/pipelines/split_fusion.h"
 
 #include <algorithm>
+#include <optional>
 
+#include "splitfusion/lib/association/image_shift.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 
@@ -17,6 +19,15 @@ std::map<int, int> CountPixels(const LiveView& live) {
     }
   }
   return counts;
+}
+
+/// Whether every surface that is drawn from its mesh is in the rendering.
+bool AllDrawn(const SurfaceMap& surfaces, const MeshRendering& rendering) {
+  return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& entry) {
+    const Surface& surface = *entry.second;
+    return surface.is_ray_cast() || surface.dormant() ||
+           rendering.first_triangle.count(surface.id()) > 0;
+  });
 }
 
 }  // namespace
@@ -118,6 +129,11 @@ void SplitFusion::Split(const Frame& frame, FrameReport* report) {
   report->decisions = std::move(split.decisions);
   FollowInstances(report);
   report->split_seconds = stopwatch.Restart();
+  if (!AllDrawn(surfaces_, rendering_)) {  // Somebody came back.
+    rendering_ =
+        RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
+    report->render_seconds += stopwatch.Restart();
+  }
 }
 
 void SplitFusion::TrackBackground(FrameReport* report) {
@@ -155,18 +171,43 @@ void SplitFusion::TrackObjects(FrameReport* report) {
     if (surface_report.pixels < options_.min_tracked_pixels) {
       surface_report.state = "unseen";
     } else {
-      Stopwatch stopwatch;
-      const std::vector<ModelSample> samples =
-          VisibleSamples(rendering_, *surface, options_.render_stride);
-      surface_report.render_seconds = stopwatch.Restart();
-      const Rigid3d world_from_camera = WorldFromCamera();
-      const Rigid3d still = world_from_camera.inverse() *
-                            velocities_.at(id).inverse() * world_from_camera;
-      tracker_.Track(samples, live_, static_cast<std::uint16_t>(id), still,
-                     surface->mutable_graph(), &surface_report);
+      TrackObject(surface.get(), &surface_report);
+      if (surface_report.state == "lost") {
+        Reacquire(surface.get(), &surface_report);
+      }
     }
     report->surfaces.push_back(std::move(surface_report));
   }
+}
+
+void SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
+  Stopwatch stopwatch;
+  const std::vector<ModelSample> samples =
+      VisibleSamples(rendering_, *surface, options_.render_stride);
+  report->render_seconds += stopwatch.Restart();
+  const Rigid3d world_from_camera = WorldFromCamera();
+  const Rigid3d still = world_from_camera.inverse() *
+                        velocities_.at(surface->id()).inverse() *
+                        world_from_camera;
+  tracker_.Track(samples, live_, static_cast<std::uint16_t>(surface->id()),
+                 still, surface->mutable_graph(), report);
+}
+
+void SplitFusion::Reacquire(Surface* surface, SurfaceReport* report) {
+  Stopwatch stopwatch;
+  const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
+  const auto id = static_cast<std::uint16_t>(surface->id());
+  const std::optional<Rigid3d> shift =
+      FindImageShift(RenderAlone(*surface, camera).raster.depth, live_, id);
+  if (!shift) return;
+  const DeformationGraph before = surface->graph();
+  ApplyRigidMotion(*shift, surface->mutable_graph());
+  const std::vector<ModelSample> samples = VisibleSamples(
+      RenderAlone(*surface, camera), *surface, options_.render_stride);
+  report->render_seconds += stopwatch.Restart();
+  tracker_.Track(samples, live_, id, Rigid3d::Identity(),
+                 surface->mutable_graph(), report);
+  if (report->state == "lost") *surface->mutable_graph() = before;
 }
 
 void SplitFusion::Fuse(FrameReport* report) {

@@ -85,6 +85,9 @@ class SplitFusion {
   void Split(const Frame& frame, FrameReport* report);
   void TrackBackground(FrameReport* report);
   void TrackObjects(FrameReport* report);
+  void TrackObject(Surface* surface, SurfaceReport* report);
+  /// Tries a lost surface again from where its live pixels are.
+  void Reacquire(Surface* surface, SurfaceReport* report);
   void Fuse(FrameReport* report);
   void FollowInstances(FrameReport* report);
   void RestartLostSurfaces(FrameReport* report);

@@ -50,28 +50,6 @@ Eigen::Vector3d CentroidOf(const std::vector<ModelSample>& samples,
   return samples.empty() ? sum : sum / static_cast<double>(samples.size());
 }
 
-/// Translation that brings the centroid of the warped samples to that of the
-/// surface's live points.
-Rigid3d MotionOfCentroids(const std::vector<ModelSample>& samples,
-                          const LiveView& live, std::uint16_t surface,
-                          const DeformationGraph& graph) {
-  Eigen::Vector3d seen = Eigen::Vector3d::Zero();
-  int count = 0;
-  for (int v = 0; v < live.depth.rows; ++v) {
-    for (int u = 0; u < live.depth.cols; ++u) {
-      if (live.labels(v, u) != surface || !(live.depth(v, u) > 0)) continue;
-      const cv::Vec3f& p = live.map.points(v, u);
-      seen += Eigen::Vector3d(p[0], p[1], p[2]);
-      ++count;
-    }
-  }
-  Rigid3d motion = Rigid3d::Identity();
-  if (count > 0 && !samples.empty()) {
-    motion.translation() = seen / count - CentroidOf(samples, graph);
-  }
-  return motion;
-}
-
 /// The stage at half its stride as often as a small surface needs.
 TrackingStage FittedStage(const TrackingStage& stage, int min_samples,
                           const std::vector<ModelSample>& samples) {
@@ -163,13 +141,8 @@ void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
       options_.velocity_gain * Misfit(samples, live, surface, stayed)) {
     predicted = stayed;
   }
-  bool tracked = TrackFrom(predicted, samples, live, surface, graph, report);
-  if (!tracked && surface != 0) {
-    DeformationGraph moved = predicted;
-    ApplyRigidMotion(MotionOfCentroids(samples, live, surface, predicted),
-                     &moved);
-    tracked = TrackFrom(moved, samples, live, surface, graph, report);
-  }
+  const bool tracked =
+      TrackFrom(predicted, samples, live, surface, graph, report);
   report->state = tracked ? "tracked" : "lost";
   if (!tracked) *graph = predicted;
 }

@@ -64,10 +64,9 @@ class SurfaceTracker {
   /// samples lie on the live pixels of `surface`. `still` is the rigid motion
   /// of the camera frame that takes the prediction back to where the surface
   /// was: tracking starts there unless the prediction fits clearly better, so
-  /// that a motion which the data do not determine does not carry itself on. If
-  /// tracking fails, an object is
-  /// tried again from where its live pixels are. A frame that fails leaves the
-  /// graph as it came; the report's state is then "lost" and says why.
+  /// that a motion which the data do not determine does not carry itself on. A
+  /// frame that fails leaves the graph where tracking started; the report's
+  /// state is then "lost" and says why.
   void Track(const std::vector<ModelSample>& samples, const LiveView& live,
              std::uint16_t surface, const Rigid3d& still,
              DeformationGraph* graph, SurfaceReport* report) const;

@@ -16,25 +16,22 @@ bool Continuous(float a, float b) {
   return std::abs(a - b) <= 4 * DepthSigma(a) + 0.02f;
 }
 
-/// Pixels that nothing but the surface itself can explain.
-cv::Mat_<uchar> Unexplained(int surface, const cv::Mat_<uchar>& blocked,
-                            const ComparedDepth& compared) {
-  const int nearer = static_cast<int>(Agreement::kNearer);
-  cv::Mat_<uchar> open =
-      ((compared.agreement == nearer) | (compared.background == nearer)) &
-      ((compared.labels == 0) | (compared.labels == surface));
-  if (!blocked.empty()) open.setTo(0, blocked);
-  return open;
-}
-
 }  // namespace
 
-cv::Mat_<uchar> GrowOverUnexplained(int surface, const cv::Mat_<uchar>& seeds,
-                                    const cv::Mat_<uchar>& blocked,
-                                    const ComparedDepth& compared,
-                                    const cv::Mat& depth) {
+cv::Mat_<uchar> UnexplainedPixels(int surface, const ComparedDepth& compared) {
+  const int nearer = static_cast<int>(Agreement::kNearer);
+  return ((compared.agreement == nearer) | (compared.background == nearer)) &
+         ((compared.labels == 0) | (compared.labels == surface));
+}
+
+cv::Mat_<uchar> UnmappedPixels(const ComparedDepth& compared) {
+  const int unknown = static_cast<int>(Agreement::kUnknown);
+  return (compared.agreement == unknown) & (compared.background == unknown);
+}
+
+cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
+                         const cv::Mat_<uchar>& seeds, const cv::Mat& depth) {
   cv::Mat_<uchar> extent = seeds.clone();
-  const cv::Mat_<uchar> open = Unexplained(surface, blocked, compared);
   std::vector<cv::Point> front;
   cv::findNonZero(seeds, front);
   while (!front.empty()) {

@@ -7,17 +7,20 @@
 
 namespace splitfusion {
 
-/// Where a surface may have moved to, HxW 8UC1, 255: `seeds` (HxW 8UC1, pixels
-/// that are known to be its own) and all that hangs together with them, without
-/// a jump in the live depth, over pixels in front of the background or of the
-/// surface's own prediction, where no other surface is predicted. A swinging
-/// arm is found in this way although neither a detection nor the prediction
-/// covers it. `surface` 0: no surface in particular. `blocked` (HxW 8UC1, may
-/// be empty) is not entered.
-cv::Mat_<uchar> GrowOverUnexplained(int surface, const cv::Mat_<uchar>& seeds,
-                                    const cv::Mat_<uchar>& blocked,
-                                    const ComparedDepth& compared,
-                                    const cv::Mat& depth);
+/// Pixels that only the surface can explain, HxW 8UC1, 255: in front of the
+/// background or of the surface's own prediction, where no other surface is
+/// predicted. `surface` 0: no surface in particular.
+cv::Mat_<uchar> UnexplainedPixels(int surface, const ComparedDepth& compared);
+
+/// Pixels of which nothing was predicted, HxW 8UC1, 255.
+cv::Mat_<uchar> UnmappedPixels(const ComparedDepth& compared);
+
+/// `seeds` and all pixels of `open` that hang together with them without a jump
+/// in the live depth; HxW 8UC1, 255. A swinging arm is found in this way
+/// although neither a detection nor the prediction covers it. `depth`: HxW
+/// 32FC1, metres.
+cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
+                         const cv::Mat_<uchar>& seeds, const cv::Mat& depth);
 
 }  // namespace splitfusion
 

@@ -165,10 +165,11 @@ SurfaceObservation SurfaceSplitter::Observe(const Segment& segment,
                                  support_.Predict(segment.surface, labels),
                                  {}};
   if (segment.mask.empty()) {
-    observation.extent = GrowOverUnexplained(
-        segment.surface,
-        AgreeingPixels(segment.surface, labels, work.compared.agreement),
-        others, work.compared, work.frame.depth);
+    const cv::Mat_<uchar> open =
+        UnexplainedPixels(segment.surface, work.compared) & ~others;
+    observation.extent = GrowOver(
+        open, AgreeingPixels(segment.surface, labels, work.compared.agreement),
+        work.frame.depth);
   }
   return observation;
 }
@@ -336,6 +337,20 @@ void SurfaceSplitter::DrawLabels(Work* work) const {
                  [&](std::uint16_t segment) { return id_of[segment]; });
 }
 
+cv::Mat_<uchar> SurfaceSplitter::Protrusions(const Work& work) const {
+  const LabelImage& labels = work.result.labels;
+  cv::Mat_<uchar> missed(labels.size(), uchar(0));
+  for (const Segment& segment : work.segments) {
+    if (segment.mask.empty()) missed |= labels == segment.surface;
+  }
+  const cv::Mat_<uchar> unexplained = UnexplainedPixels(0, work.compared);
+  const cv::Mat_<uchar> unmapped = UnmappedPixels(work.compared);
+  const cv::Mat_<uchar> grown =
+      GrowOver(unexplained, labels > 0, work.frame.depth) |
+      GrowOver(unexplained | unmapped, missed, work.frame.depth);
+  return grown & (labels == 0);
+}
+
 void SurfaceSplitter::DrawUncertain(Work* work) const {
   UncertainInput input{work->result.labels,
                        work->unconfirmed,
@@ -343,11 +358,7 @@ void SurfaceSplitter::DrawUncertain(Work* work) const {
                        work->prior.labels.clone(),
                        work->compared.agreement,
                        work->frame.depth};
-  // In front of the background and one with a surface: not background, though
-  // the cut did not give it to the surface.
-  input.unconfirmed |= GrowOverUnexplained(0, work->result.labels > 0, {},
-                                           work->compared, work->frame.depth) &
-                       (work->result.labels == 0);
+  input.unconfirmed |= Protrusions(*work);
   for (const auto& [id, instance] : registry_.instances()) {
     if (!instance.dormant) continue;
     input.predicted_labels.setTo(0, work->prior.labels == id);

@@ -81,6 +81,9 @@ class SurfaceSplitter {
   void MergeCoveredSurfaces(Work* work);
   bool IsCovered(const Segment& part, int body_index, const Work& work) const;
   void DrawLabels(Work* work) const;
+  /// What is one with a surface and in front of the background, though the cut
+  /// did not give it to the surface; of a missed one what is unmapped too.
+  cv::Mat_<uchar> Protrusions(const Work& work) const;
   void DrawUncertain(Work* work) const;
   void Remember(const Work& work);
 

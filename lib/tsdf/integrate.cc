@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "splitfusion/lib/geometry/point_map.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
@@ -11,7 +12,12 @@ namespace splitfusion {
 namespace internal {
 namespace {
 
-constexpr float kFreeSpaceWeight = 1.0f;
+/// A voxel that is clearly in front of what was measured is empty. That counts
+/// more than where a noisy ray ended, whatever the range: a limb that moved on
+/// is gone within a few frames.
+constexpr float kFreeSpaceWeight = 3.0f;
+/// "Clearly": farther than the truncation by as many sigma of the depth.
+constexpr float kFreeSpaceSigmas = 3.0f;
 
 }  // namespace
 
@@ -34,9 +40,10 @@ void VoxelUpdater::Update(const Eigen::Vector3f& p, float* distance,
   const bool in_band = role == PixelRole::kWrite && sdf >= -truncation;
   if (!in_band && sdf <= truncation) return;
   const float sample = std::min(sdf, truncation);
-  // That a ray passed freely does not depend on the noise of where it ended.
+  const bool free_space =
+      sdf > truncation + kFreeSpaceSigmas * DepthSigma(depth);
   const float confidence =
-      sdf > truncation ? kFreeSpaceWeight : observation.weight(v, u);
+      free_space ? kFreeSpaceWeight : observation.weight(v, u);
   const float sum = *weight + confidence;
   if (!(sum > 0)) return;
   const float blend = confidence / sum;
