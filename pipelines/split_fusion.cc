@@ -37,6 +37,7 @@ PipelineOptions::PipelineOptions() {
   background.tsdf.truncation = 0.040;
   object.tsdf.voxel_size = 0.005;
   object.tsdf.truncation = 0.030;
+  object.min_piece_area = 0.0025;
 }
 
 void PipelineOptions::Check() const {
@@ -217,7 +218,7 @@ void SplitFusion::Fuse(FrameReport* report) {
     Stopwatch stopwatch;
     surface.Fuse(live_);
     tracked.fuse_seconds = stopwatch.Restart();
-    if (!surface.is_ray_cast()) surface.UpdateMesh(/*grow=*/true);
+    if (!surface.is_ray_cast()) surface.UpdateMesh();
     tracked.mesh_seconds = stopwatch.Restart();
   }
 }
@@ -331,7 +332,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
 }
 
 void SplitFusion::Finish() {
-  for (const auto& [id, surface] : surfaces_) surface->UpdateMesh(false);
+  for (const auto& [id, surface] : surfaces_) surface->FinishMesh();
 }
 
 Rigid3d SplitFusion::WorldFromCamera() const {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/mesh_pieces.h"
 
 namespace splitfusion {
 namespace {
@@ -50,6 +51,8 @@ void SurfaceOptions::Check() const {
   tsdf.Check();
   graph.Check();
   CheckOption(min_mesh_weight > 0, "min_mesh_weight", min_mesh_weight, "> 0");
+  CheckOption(min_piece_area >= 0, "min_piece_area", min_piece_area,
+              "square metres, >= 0");
   CheckOption(growth_reach > 0, "growth_reach", growth_reach, "metres > 0");
 }
 
@@ -143,9 +146,15 @@ void Surface::AllocateUncovered(const LiveView& live) {
   AllocateAround(uncovered, options_.tsdf.truncation, &volume_);
 }
 
-void Surface::UpdateMesh(bool grow) {
+void Surface::FinishMesh() {
+  mesh_ = WithoutSmallPieces(ExtractMesh(volume_, options_.min_mesh_weight),
+                             options_.min_piece_area);
+  mesh_skinning_ = index_->Skin(mesh_.vertices);
+}
+
+void Surface::UpdateMesh() {
   mesh_ = ExtractMesh(volume_, options_.min_mesh_weight);
-  if (grow && kind_ == SurfaceKind::kNonRigid &&
+  if (kind_ == SurfaceKind::kNonRigid &&
       GrowGraph(mesh_, options_.graph, &graph_, &history_) > 0) {
     RefreshSkinning();
   } else {

@@ -25,6 +25,9 @@ struct SurfaceOptions {
   /// Observations a voxel needs before it is meshed (weights, about frames at
   /// close range).
   double min_mesh_weight = 0.05;
+  /// Pieces of the final mesh smaller than this are left out, square metres:
+  /// noise, and remains of what moved on.
+  double min_piece_area = 0.01;
   /// A non-rigid surface grows over live points that are no farther than this
   /// from a node, metres: as far as a newly seen limb reaches in one frame.
   double growth_reach = 0.35;
@@ -51,9 +54,11 @@ class Surface {
   /// Fuses the live pixels of this surface under the current motions.
   void Fuse(const LiveView& live);
 
-  /// Extracts the canonical mesh and grows the graph over new parts of it; not
-  /// for the background when it is rigid, see `UpdateMesh(true)`.
-  void UpdateMesh(bool grow);
+  /// Extracts the canonical mesh and grows the graph over new parts of it.
+  void UpdateMesh();
+
+  /// Extracts the final canonical mesh, without small pieces.
+  void FinishMesh();
 
   /// Appends the current motions to the history.
   void RecordMotions(int frame, bool tracked);
@@ -92,7 +97,7 @@ class Surface {
   const SkinningIndex& skinning_index() const { return *index_; }
   /// Its volume, canonical frame.
   const TsdfVolume& volume() const { return volume_; }
-  /// Its mesh, canonical frame; see UpdateMesh().
+  /// Its mesh, canonical frame; see UpdateMesh() and FinishMesh().
   const TriangleMesh& mesh() const { return mesh_; }
   /// Skinning of the mesh's vertices.
   const std::vector<Skinning>& mesh_skinning() const { return mesh_skinning_; }

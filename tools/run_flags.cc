@@ -55,6 +55,9 @@ DEFINE_double(object_voxel, 0.005, "Metres.");
 DEFINE_double(background_truncation, 0.04, "Metres.");
 DEFINE_double(object_truncation, 0.03, "Metres.");
 DEFINE_double(max_weight, 64, "Cap of the running mean.");
+DEFINE_double(background_min_piece, 0.01,
+              "Smaller pieces of the final mesh are left out, m^2.");
+DEFINE_double(object_min_piece, 0.0025, "Likewise.");
 DEFINE_int32(render_stride, 2, "Model maps hold every n-th pixel.");
 
 namespace splitfusion {
@@ -119,6 +122,8 @@ void SetModel(PipelineOptions* options) {
   options->object.graph = graph;
   options->background.tsdf = {FLAGS_background_voxel,
                               FLAGS_background_truncation, FLAGS_max_weight};
+  options->background.min_piece_area = FLAGS_background_min_piece;
+  options->object.min_piece_area = FLAGS_object_min_piece;
   options->object.tsdf = {FLAGS_object_voxel, FLAGS_object_truncation,
                           FLAGS_max_weight};
 }

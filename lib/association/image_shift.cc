@@ -10,7 +10,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kStep = 8;            // Live pixels between candidates.
+constexpr int kColumns = 80;        // Of the grid that is searched.
 constexpr int kMaxColumns = 40;     // Steps to either side.
 constexpr int kMaxRows = 12;        // Steps up and down.
 constexpr int kMaxLayers = 5;       // Steps nearer and farther.
@@ -31,7 +31,7 @@ struct Shift {
   double score = -1e9;
 };
 
-/// Every kStep-th pixel of `depth`, 0 where `keep` is false.
+/// Every step-th pixel of `depth`, 0 where `keep` is false.
 template <typename Keep>
 cv::Mat_<float> Coarse(const cv::Mat_<float>& depth, int step,
                        const Keep& keep) {
@@ -115,10 +115,11 @@ std::optional<Rigid3d> FindImageShift(const cv::Mat_<float>& model,
                                       std::uint16_t surface) {
   const int stride = std::max(1, live.depth.cols / std::max(1, model.cols));
   Search search;
-  search.model = Coarse(model, std::max(1, kStep / stride),
-                        [](int, int) { return true; });
-  search.live = Coarse(live.depth, kStep, [](int, int) { return true; });
-  search.own = Points(Coarse(live.depth, kStep, [&](int v, int u) {
+  const int model_step = std::max(1, live.depth.cols / kColumns / stride);
+  const int step = model_step * stride;  // Live pixels between candidates.
+  search.model = Coarse(model, model_step, [](int, int) { return true; });
+  search.live = Coarse(live.depth, step, [](int, int) { return true; });
+  search.own = Points(Coarse(live.depth, step, [&](int v, int u) {
     return live.labels(v, u) == surface;
   }));
   search.visible = Points(search.model);
@@ -130,11 +131,12 @@ std::optional<Rigid3d> FindImageShift(const cv::Mat_<float>& model,
   const Shift best = *std::max_element(
       columns.begin(), columns.end(),
       [](const Shift& a, const Shift& b) { return a.score < b.score; });
-  if (best.hits < kMinExplained * search.own.size()) return std::nullopt;
+  const auto comparable = std::min(search.own.size(), search.visible.size());
+  if (best.hits < kMinExplained * comparable) return std::nullopt;
   const double z = MedianDepth(search.own);
   Rigid3d motion = Rigid3d::Identity();
-  motion.translation() = Eigen::Vector3d(best.du * kStep * z / live.camera.fx,
-                                         best.dv * kStep * z / live.camera.fy,
+  motion.translation() = Eigen::Vector3d(best.du * step * z / live.camera.fx,
+                                         best.dv * step * z / live.camera.fy,
                                          kLayer * best.layer);
   return motion;
 }

@@ -17,7 +17,7 @@ namespace splitfusion {
 /// `model`: depth of the surface alone, HxW of every n-th live pixel, metres,
 /// 0 = nothing.
 /// @return camera from camera; empty if no shift explains at least 0.3 of the
-///     live pixels.
+///     live pixels, or of the model's if they are fewer.
 std::optional<Rigid3d> FindImageShift(const cv::Mat_<float>& model,
                                       const LiveView& live,
                                       std::uint16_t surface);

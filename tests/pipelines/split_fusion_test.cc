@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "splitfusion/lib/evaluation/trajectory_error.h"
@@ -134,6 +135,46 @@ TEST(SplitFusion, AFrameWithoutDepthIsLostAndSurvived) {
     ASSERT_NE(motions, nullptr);
     EXPECT_FALSE(motions->tracked);
   }
+}
+
+TEST(SplitFusion, APersonWhoJumpsIsFoundWhereHisPixelsAre) {
+  SyntheticOptions scene = SyntheticRun::Quick();
+  scene.width = 320, scene.height = 240;
+  SyntheticRun run(scene);
+  for (int i = 0; i < 3; ++i) run.Next();
+  const int person = PersonId(run.fusion());
+  const Eigen::Vector3d before =
+      MeanRigidMotion(run.fusion().surfaces().at(person)->graph())
+          .translation();
+  constexpr int kPixels = 32;
+  const FrameReport report =
+      run.Next([](Frame* frame, std::vector<InstanceMask>* detections) {
+        const auto moved = [](const cv::Mat& image, const cv::Mat& mask) {
+          const cv::Mat shift = (cv::Mat_<double>(2, 3) << 1, 0, kPixels, 0, 1, 0);
+          cv::Mat result = cv::Mat::zeros(image.size(), image.type());
+          image.copyTo(result, mask);
+          cv::warpAffine(result, result, shift, image.size(),
+                         cv::INTER_NEAREST);
+          return result;
+        };
+        for (InstanceMask& detection : *detections) {
+          if (detection.class_name != "person") continue;
+          const cv::Mat depth = moved(frame->depth, detection.mask);
+          const cv::Mat color = moved(frame->color, detection.mask);
+          const cv::Mat mask = moved(detection.mask, detection.mask);
+          frame->depth.setTo(0, detection.mask);
+          depth.copyTo(frame->depth, mask);
+          color.copyTo(frame->color, mask);
+          detection.mask = mask;
+        }
+      });
+  EXPECT_EQ(StateOf(report, person), "tracked")
+      << Find(report, person)->reason;
+  const Eigen::Vector3d way =
+      MeanRigidMotion(run.fusion().surfaces().at(person)->graph())
+          .translation() -
+      before;
+  EXPECT_GT(way.x(), 0.06);
 }
 
 TEST(SplitFusion, BeginsWithTheFirstFrameThatHasDepth) {

@@ -33,7 +33,7 @@ TEST(Surface, TheRigidBackgroundHasOneNodeAndIsRayCast) {
   ASSERT_TRUE(background.Initialize(ViewWithBox(kHalf)));
   EXPECT_TRUE(background.is_ray_cast());
   EXPECT_TRUE(background.graph().rigid());
-  background.UpdateMesh(false);
+  background.FinishMesh();
   for (const Eigen::Vector3f& v : background.mesh().vertices) {
     EXPECT_NEAR(v.z(), 1.5, 0.01) << "the box is another surface";
   }
@@ -72,7 +72,7 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
   const std::size_t vertices = box.mesh().vertices.size();
   for (int frame = 5; frame < 9; ++frame) {
     box.Fuse(ViewWithBox(kWhole));
-    box.UpdateMesh(/*grow=*/true);
+    box.UpdateMesh();
     box.RecordMotions(frame, true);
   }
   EXPECT_GT(box.graph().size(), 1.5 * nodes);
@@ -166,12 +166,38 @@ TEST(ModelRendering, PredictionHasTheFullSize) {
   const SurfaceMap surfaces = Scene();
   const MeshRendering rendering =
       RenderMeshes(surfaces, SmallCamera().Subsampled(2));
-  const SurfacePrediction prediction = ToPrediction(rendering, SmallCamera());
+  const SurfacePrediction prediction =
+      ToPrediction(rendering, {}, SmallCamera());
   EXPECT_EQ(prediction.labels.size(), cv::Size(160, 120));
   EXPECT_EQ(prediction.labels(60, 80), 1);
   EXPECT_NEAR(prediction.depth(60, 80), 1.0, 0.005);
   EXPECT_EQ(prediction.labels(10, 10), 0);
   EXPECT_EQ(prediction.depth(10, 10), 0);
+  EXPECT_TRUE(prediction.background.empty());
+}
+
+TEST(ModelRendering, PredictionHasTheBackgroundBehindTheSurfaces) {
+  const SurfaceMap surfaces = Scene();
+  const MeshRendering rendering =
+      RenderMeshes(surfaces, SmallCamera().Subsampled(2));
+  const SurfacePrediction prediction = ToPrediction(
+      rendering,
+      RenderBackground(surfaces, SmallCamera(), 2, RayCastOptions()),
+      SmallCamera());
+  EXPECT_EQ(prediction.labels(60, 80), 1);
+  EXPECT_NEAR(prediction.depth(60, 80), 1.0, 0.005);
+  EXPECT_EQ(prediction.labels(10, 10), 0);
+  EXPECT_NEAR(prediction.depth(10, 10), 1.5, 0.01);
+  EXPECT_NEAR(prediction.background(10, 10), 1.5, 0.01);
+}
+
+TEST(ModelRendering, AloneNothingHidesASurface) {
+  SurfaceMap surfaces = Scene();
+  EXPECT_EQ(RenderMeshes(surfaces, SmallCamera()).first_triangle.count(1), 1u);
+  const MeshRendering alone = RenderAlone(*surfaces.at(1), SmallCamera());
+  EXPECT_NEAR(alone.raster.depth(60, 80), 1.0, 0.005);
+  surfaces.at(1)->set_dormant(true);
+  EXPECT_EQ(RenderMeshes(surfaces, SmallCamera()).first_triangle.count(1), 0u);
 }
 
 TEST(ModelRendering, SamplesLieOnTheSurfaceAtTheirPixels) {
@@ -195,7 +221,9 @@ TEST(ModelRendering, SamplesLieOnTheSurfaceAtTheirPixels) {
     }
   };
   check(VisibleSamples(rendering, *surfaces.at(1), 2), 1.0);
-  check(RayCastSamples(*surfaces.at(0), SmallCamera(), 2, RayCastOptions()),
+  check(BackgroundSamples(
+            RenderBackground(surfaces, SmallCamera(), 2, RayCastOptions()),
+            motion, 2),
         1.5);
 }
 

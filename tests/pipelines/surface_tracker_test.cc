@@ -179,25 +179,6 @@ TEST(SurfaceTracker, DoesNotFollowAPredictionThatFitsWorse) {
   EXPECT_LT(MeanRigidMotion(graph).translation().norm(), 0.001);
 }
 
-TEST(SurfaceTracker, AnObjectThatJumpedIsFoundWhereItsPixelsAre) {
-  const auto view = [](const Eigen::Vector3d& center) {
-    const cv::Mat_<float> ball = SphereDepth(Camera(), center, 0.15);
-    cv::Mat_<float> depth = WallDepth(Camera(), 2.5);
-    ball.copyTo(depth, ball > 0);
-    LiveView live = View(depth);
-    live.labels.setTo(2, ball > 0);
-    return live;
-  };
-  const Eigen::Vector3d from(-0.1, 0, 1), to(0.15, 0.1, 1.05);
-  DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  SurfaceReport report;
-  MakeTracker().Track(SamplesOf(view(from), 2), view(to), 2,
-                      Rigid3d::Identity(), &graph, &report);
-  EXPECT_EQ(report.state, "tracked") << report.reason;
-  // A ball may turn: where its centre goes counts.
-  EXPECT_LT((MeanRigidMotion(graph) * from - to).norm(), 0.003);
-}
-
 TEST(SurfaceTracker, BendsANonRigidSurfaceOntoTheDepth) {
   // Waves keep the sheet from sliding along itself.
   const auto waves = [](double x, double y) {

@@ -17,10 +17,11 @@ const cv::Rect kCard(50, 30, 50, 60);
 cv::Mat_<uchar> CutByMask(const Frame& frame, const cv::Mat_<uchar>& mask) {
   const SplitOptions options = SceneOptions();
   const PointMap points = ComputePointMap(frame.depth, SceneCamera());
-  const LabelImage nothing(frame.depth.size(), 0);
   const cv::Mat_<uchar> unknown(frame.depth.size(), uchar(0));
+  const ComparedDepth nothing{LabelImage(frame.depth.size(), 0), unknown,
+                              unknown};
   const SurfaceEvidence evidence = GatherEvidence(
-      {0, mask, {}, {}}, nothing, unknown, options.graph_cut, options.prior);
+      {0, mask, {}, {}, {}}, nothing, options.graph_cut, options.prior);
   cv::Mat_<uchar> result(frame.depth.size(), uchar(0));
   CutForeground(points, frame.color, evidence.crop, evidence.evidence,
                 options.graph_cut)

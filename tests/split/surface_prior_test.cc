@@ -17,7 +17,7 @@ TEST(CompareDepth, TellsNearerFartherAndTheSame) {
   SurfacePrediction prediction;
   prediction.depth = (cv::Mat_<float>(1, 6) << 1, 0, 1, 1, 1, 1);
   prediction.labels = LabelImage(1, 6, std::uint16_t(0));
-  cv::Mat_<uchar> agreement = CompareDepth(live, prediction, {});
+  cv::Mat_<uchar> agreement = CompareDepth(live, prediction, {}).agreement;
   EXPECT_EQ(At(agreement, 0), Agreement::kUnknown);
   EXPECT_EQ(At(agreement, 1), Agreement::kUnknown);
   EXPECT_EQ(At(agreement, 2), Agreement::kSame);
@@ -26,32 +26,50 @@ TEST(CompareDepth, TellsNearerFartherAndTheSame) {
   // The background does not move: its gate is narrower than a surface's.
   EXPECT_EQ(At(agreement, 5), Agreement::kFarther);
   prediction.labels.setTo(1);
-  agreement = CompareDepth(live, prediction, {});
+  agreement = CompareDepth(live, prediction, {}).agreement;
   EXPECT_EQ(At(agreement, 5), Agreement::kSame);
+}
+
+TEST(CompareDepth, SeesTheBackgroundBehindASurface) {
+  const cv::Mat live = (cv::Mat_<float>(1, 3) << 1.2, 2, 2);
+  SurfacePrediction prediction;
+  prediction.depth = (cv::Mat_<float>(1, 3) << 1, 1, 1);
+  prediction.labels = LabelImage(1, 3, std::uint16_t(1));
+  EXPECT_EQ(At(CompareDepth(live, prediction, {}).background, 0),
+            Agreement::kUnknown);
+  prediction.background = (cv::Mat_<float>(1, 3) << 2, 2, 0);
+  const ComparedDepth compared = CompareDepth(live, prediction, {});
+  for (int u = 0; u < 3; ++u) {
+    EXPECT_EQ(At(compared.agreement, u), Agreement::kFarther);
+  }
+  EXPECT_EQ(At(compared.background, 0), Agreement::kNearer);
+  EXPECT_EQ(At(compared.background, 1), Agreement::kSame);
+  EXPECT_EQ(At(compared.background, 2), Agreement::kUnknown);
 }
 
 class GatherEvidenceTest : public testing::Test {
  protected:
   GatherEvidenceTest()
-      : labels_(120, 160, std::uint16_t(0)),
-        agreement_(120, 160, uchar(Agreement::kUnknown)) {}
+      : compared_{LabelImage(120, 160, std::uint16_t(0)),
+                  cv::Mat_<uchar>(120, 160, uchar(Agreement::kUnknown)),
+                  cv::Mat_<uchar>(120, 160, uchar(Agreement::kUnknown))} {}
 
   /// Evidence at a pixel; the surface's id is 1.
   float At(const cv::Point& pixel, const cv::Mat_<uchar>& mask,
            const cv::Mat_<float>& support = {}) const {
     const SurfaceEvidence evidence =
-        GatherEvidence({1, mask, {}, support}, labels_, agreement_,
+        GatherEvidence({1, mask, {}, support, extent_}, compared_,
                        SceneOptions().graph_cut, PriorOptions());
     if (!evidence.crop.contains(pixel)) return kSurelyBackground;
     return evidence.evidence(pixel - evidence.crop.tl());
   }
   void Predict(const cv::Rect& rect, int label, Agreement agreement) {
-    labels_(rect) = static_cast<std::uint16_t>(label);
-    agreement_(rect) = static_cast<uchar>(agreement);
+    compared_.labels(rect) = static_cast<std::uint16_t>(label);
+    compared_.agreement(rect) = static_cast<uchar>(agreement);
   }
 
-  LabelImage labels_;
-  cv::Mat_<uchar> agreement_;
+  ComparedDepth compared_;
+  cv::Mat_<uchar> extent_;
   const cv::Mat_<uchar> mask_ = RectMask({40, 40, 40, 40});
   const cv::Mat_<uchar> missed_;
 };
@@ -80,6 +98,23 @@ TEST_F(GatherEvidenceTest, AMissedSurfaceIsWhereTheDepthAgrees) {
   EXPECT_GT(At({70, 60}, missed_), 0);
 }
 
+TEST_F(GatherEvidenceTest, AMissedSurfaceMayBeInAllItsExtent) {
+  Predict({40, 40, 40, 40}, 1, Agreement::kSame);
+  EXPECT_EQ(At({100, 60}, missed_), kSurelyBackground);
+  extent_ = RectMask({40, 40, 80, 40});
+  EXPECT_GT(At({100, 60}, missed_), 0);
+}
+
+TEST_F(GatherEvidenceTest, BehindItselfIsItselfOrTheBackground) {
+  Predict({40, 40, 40, 40}, 1, Agreement::kSame);
+  const cv::Rect uncovered(55, 55, 10, 10);
+  Predict(uncovered, 1, Agreement::kFarther);
+  compared_.background(uncovered) = static_cast<uchar>(Agreement::kSame);
+  EXPECT_LT(At({60, 60}, missed_), 0);
+  compared_.background(uncovered) = static_cast<uchar>(Agreement::kNearer);
+  EXPECT_GT(At({60, 60}, missed_), 0);
+}
+
 TEST_F(GatherEvidenceTest, BackgroundAndOthersSpeakAgainst) {
   const float neutral = At({60, 60}, mask_);
   Predict({40, 40, 40, 40}, 0, Agreement::kSame);
@@ -92,8 +127,8 @@ TEST_F(GatherEvidenceTest, BackgroundAndOthersSpeakAgainst) {
 
 TEST_F(GatherEvidenceTest, NothingSeenMakesAnEmptyCrop) {
   const SurfaceEvidence evidence =
-      GatherEvidence({1, missed_, {}, {}}, labels_, agreement_,
-                     GraphCutOptions(), PriorOptions());
+      GatherEvidence({1, missed_, {}, {}, {}}, compared_, GraphCutOptions(),
+                     PriorOptions());
   EXPECT_EQ(evidence.crop.area(), 0);
 }
 

@@ -216,12 +216,47 @@ TEST_F(SurfaceSplitterTest, UsesThePredictionOfATracker) {
   Split(first, {{first.Truth(1), "person", 0.9}});
   second.Add({110, 25, 40, 70}, 2.0, 1);  // Too far without prediction.
   SurfacePrediction prediction{LabelImage(120, 160, std::uint16_t(0)),
-                               second.depth().clone()};
+                               second.depth().clone(),
+                               {}};
   prediction.labels.setTo(1, second.Truth(1));
   const Frame frame = second.MakeFrame(1);
   last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),
                           {}, prediction);
   EXPECT_GT(IouOf(1, second.Truth(1)), 0.97);
+}
+
+TEST_F(SurfaceSplitterTest, AMissedSurfaceKeepsTheArmThatItRaises) {
+  LayeredScene first, second;
+  first.Add(kCard, 2.0, 1);
+  Split(first, {{first.Truth(1), "person", 0.9}});
+  // Joined to the card, far outside of it and of every band around it.
+  second.Add(kCard, 2.0, 1).Add({kCard.br().x, 50, 45, 10}, 2.0, 1);
+  SurfacePrediction prediction{LabelImage(120, 160, std::uint16_t(0)),
+                               first.depth().clone(),
+                               cv::Mat_<float>(120, 160, 3.0f)};
+  prediction.labels.setTo(1, first.Truth(1));
+  const Frame frame = second.MakeFrame(1);
+  last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),
+                          {}, prediction);
+  EXPECT_GT(IouOf(1, second.Truth(1)), 0.95);
+}
+
+TEST_F(SurfaceSplitterTest, WhatStandsOutOfASurfaceIsNotBackground) {
+  LayeredScene first, second;
+  first.Add(kCard, 2.0, 1);
+  Split(first, {{first.Truth(1), "person", 0.9}});
+  const cv::Rect arm(kCard.br().x, 50, 45, 10);
+  second.Add(kCard, 2.0, 1).Add(arm, 2.0, 1);
+  SurfacePrediction prediction{LabelImage(120, 160, std::uint16_t(0)),
+                               first.depth().clone(),
+                               cv::Mat_<float>(120, 160, 3.0f)};
+  prediction.labels.setTo(1, first.Truth(1));
+  const Frame frame = second.MakeFrame(1);
+  // The detector cuts the arm off.
+  last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),
+                          {{first.Truth(1), "person", 0.9}}, prediction);
+  const cv::Mat known = (last_.labels > 0) | last_.uncertain;
+  EXPECT_EQ(cv::countNonZero(known(arm)), arm.area());
 }
 
 TEST_F(SurfaceSplitterTest, TheSameInputGivesTheSameResult) {
