@@ -35,15 +35,23 @@ void PaintMask(const cv::Mat& mask, const cv::Scalar& paint, cv::Mat* picture) {
   cv::drawContours(*picture, outlines, -1, paint);
 }
 
+/// Class and score inside the upper left corner of the box, moved so that they
+/// stay in the picture.
 void DrawCaption(const InstanceMask& instance, cv::Point corner,
                  cv::Mat* picture) {
+  constexpr double kScale = 0.42;
   char score[16];
   std::snprintf(score, sizeof(score), " %.2f", instance.score);
-  const cv::Point place(std::max(corner.x + 2, 2), std::max(corner.y + 12, 12));
-  for (const auto& [paint, width] :
+  const std::string text = instance.class_name + score;
+  const int width =
+      cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kScale, 1, nullptr).width;
+  const cv::Point place(
+      std::max(std::min(corner.x, picture->cols - width - 4) + 2, 2),
+      std::max(corner.y + 12, 12));
+  for (const auto& [paint, thickness] :
        {std::pair(cv::Scalar::all(0), 3), std::pair(cv::Scalar::all(255), 1)}) {
-    cv::putText(*picture, instance.class_name + score, place,
-                cv::FONT_HERSHEY_SIMPLEX, 0.42, paint, width, cv::LINE_AA);
+    cv::putText(*picture, text, place, cv::FONT_HERSHEY_SIMPLEX, kScale, paint,
+                thickness, cv::LINE_AA);
   }
 }
 

@@ -35,9 +35,9 @@ std::string Text(double value) {
 NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options)
     : options_(Checked(options)),
       decoder_(MakeDecoder(options.decoder)),
-      network_(options.model),
-      input_size_(ChooseInputSize()) {
+      network_(options.model) {
   network_.CheckOutputs(decoder_->OutputNames());
+  input_size_ = ChooseInputSize();
   Run(cv::Mat(input_size_, CV_8UC3, cv::Scalar::all(114)));
 }
 

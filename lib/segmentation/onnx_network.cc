@@ -49,11 +49,14 @@ std::string Fingerprint(const std::string& bytes) {
   return text.str();
 }
 
-/// What OpenCV complains of, in one line.
+/// What OpenCV complains of, in one line: its own quotes of quotes, marked by
+/// lines that begin with >, are joined.
 std::string OneLine(const cv::Exception& error) {
-  std::string text = error.err.empty() ? error.what() : error.err;
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  text.erase(text.find_last_not_of(' ') + 1);
+  std::istringstream words(error.err.empty() ? error.what() : error.err);
+  std::string text;
+  for (std::string word; words >> word;) {
+    if (word != ">") text += (text.empty() ? "" : " ") + word;
+  }
   return text;
 }
 

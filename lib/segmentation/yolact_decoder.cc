@@ -45,7 +45,8 @@ CheckedOutputs CheckOutputs(const YolactOutputs& outputs, int priors,
   CheckShape(outputs.loc, {priors, 4}, rows + "4" + size);
   CheckShape(outputs.conf, {priors, columns},
              rows + std::to_string(columns) + ", background and " +
-                 std::to_string(input.classes) + " classes," + size);
+                 std::to_string(input.classes) + " classes (by their names)," +
+                 size);
   const std::vector<int> proto =
       CheckShape(outputs.proto, {-1, -1, -1}, "1xHxWxM, M prototypes");
   CheckShape(outputs.mask, {priors, proto[2]},

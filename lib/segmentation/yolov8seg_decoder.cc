@@ -33,8 +33,9 @@ std::vector<int> CheckOutputs(const Yolov8SegOutputs& outputs,
   const int expected = kBoxRows + input.classes + prototypes;
   CheckShape(outputs.detections, {expected, -1},
              "1x" + std::to_string(expected) + "xN, a box, " +
-                 std::to_string(input.classes) + " classes and " +
-                 std::to_string(prototypes) + " mask coefficients");
+                 std::to_string(input.classes) +
+                 " classes (by their names) and " + std::to_string(prototypes) +
+                 " mask coefficients");
   return shape;
 }
 
