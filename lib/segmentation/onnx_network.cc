@@ -114,7 +114,6 @@ OnnxNetwork::OnnxNetwork(const std::string& path) : path_(path) {
 }
 
 OnnxNetwork::~OnnxNetwork() = default;
-OnnxNetwork::OnnxNetwork(OnnxNetwork&&) noexcept = default;
 
 void OnnxNetwork::CheckOutputs(const std::vector<std::string>& names) const {
   for (const std::string& name : names) {

@@ -18,7 +18,6 @@ class OnnxNetwork {
   ///     input or one that is no image, or holds what OpenCV does not take.
   explicit OnnxNetwork(const std::string& path);
   ~OnnxNetwork();
-  OnnxNetwork(OnnxNetwork&&) noexcept;
 
   /// File of the network.
   const std::string& path() const { return path_; }
