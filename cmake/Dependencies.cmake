@@ -27,6 +27,6 @@ function(splitfusion_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC Eigen3::Eigen Ceres::ceres opencv_core opencv_imgproc
            opencv_imgcodecs TBB::tbb nlohmann_json::nlohmann_json
-    PRIVATE OpenVDB::openvdb pcl_kdtree)
+    PRIVATE opencv_dnn OpenVDB::openvdb pcl_kdtree)
   target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS})
 endfunction()

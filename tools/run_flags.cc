@@ -3,6 +3,7 @@
 #include <gflags/gflags.h>
 
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <vector>
 
@@ -163,8 +164,10 @@ std::string FlagfileText() {
   gflags::GetAllFlags(&flags);
   std::string text;
   for (const gflags::CommandLineFlagInfo& flag : flags) {
-    const bool ours = flag.filename.find("tools/sf_run") != std::string::npos ||
-                      flag.filename.find("run_flags") != std::string::npos;
+    const std::string file =
+        std::filesystem::path(flag.filename).filename().string();
+    const bool ours = file == "sf_run.cc" || file == "run_flags.cc" ||
+                      file == "network_flags.cc";
     if (ours) text += "--" + flag.name + "=" + flag.current_value + "\n";
   }
   return text;

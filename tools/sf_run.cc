@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "network_flags.h"
 #include "run_flags.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
@@ -19,6 +20,7 @@
 #include "splitfusion/lib/report/library_versions.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+#include "splitfusion/lib/segmentation/recording_segmenter.h"
 #include "splitfusion/lib/sequence/tum_reader.h"
 #include "splitfusion/pipelines/split_fusion.h"
 #include "splitfusion/pipelines/surface_output.h"
@@ -28,8 +30,8 @@ DEFINE_string(sequence, "", "Folder of the sequence, TUM RGB-D layout.");
 DEFINE_string(output, "", "Run directory to write.");
 DEFINE_bool(overwrite, false, "Replace an earlier run in --output.");
 DEFINE_string(masks, "auto",
-              "Folder of instance masks, none, or auto: masks_noisy or mask "
-              "beside the sequence.");
+              "Folder of instance masks, none, or auto: by --model if given, "
+              "else masks_noisy or mask beside the sequence.");
 DEFINE_string(mask_kind, "non_rigid",
               "Of masks without classes: non_rigid or rigid.");
 DEFINE_string(labels, "", "File `class, rigid|non_rigid` a line.");
@@ -42,7 +44,18 @@ DECLARE_string(preset);
 namespace splitfusion {
 namespace {
 
+/// The network of the flags; its masks are kept in the run directory.
+std::shared_ptr<Segmenter> MakeNetworkSegmenter() {
+  CheckOption(FLAGS_masks == "auto", "--masks", FLAGS_masks,
+              "auto with --model (or an empty --model= to read masks)");
+  auto network = std::make_unique<NetworkSegmenter>(NetworkOptionsFromFlags());
+  const std::map<std::string, std::string> settings = network->Settings();
+  return std::make_shared<RecordingSegmenter>(
+      std::move(network), RunPaths(FLAGS_output).Detections(), settings);
+}
+
 std::shared_ptr<Segmenter> MakeSegmenter() {
+  if (HasNetworkFlags()) return MakeNetworkSegmenter();
   std::string folder = FLAGS_masks;
   if (folder == "auto") folder = FindMaskFolder(FLAGS_sequence);
   if (folder.empty() || folder == "none") return nullptr;
@@ -167,6 +180,7 @@ int RunSequence() {
   const tbb::global_control threads(
       tbb::global_control::max_allowed_parallelism,
       static_cast<std::size_t>(FLAGS_threads));
+  cv::setNumThreads(FLAGS_threads);
   SetBlasThreads(1);
   Run().Execute();
   return kExitDone;
@@ -179,6 +193,7 @@ int main(int argc, char** argv) {
   return splitfusion::ToolMain(
       argc, argv,
       "Tracks and maps the rigid and non-rigid surfaces of an RGB-D sequence.\n"
-      "sf_run --sequence=DIR --output=RUN [--masks=DIR|none] [--preset=NAME]",
+      "sf_run --sequence=DIR --output=RUN [--masks=DIR|none] [--preset=NAME]\n"
+      "       [--model=FILE.onnx --decoder=yolov8seg|yolact]\n",
       splitfusion::RunSequence);
 }

@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <sstream>
 #include <vector>
 
@@ -66,15 +67,27 @@ std::string FlagHelp(const gflags::CommandLineFlagInfo& flag) {
   return head + Wrapped(flag.description);
 }
 
-void PrintHelp(const std::string& usage) {
+/// Help on the flags of this folder by the file that defines them; of a file
+/// that tools share the name is a heading.
+std::map<std::string, std::string> HelpByFile() {
   namespace fs = std::filesystem;
-  std::cout << usage;
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
+  std::map<std::string, std::string> help;
   for (const auto& flag : flags) {
-    if (fs::path(flag.filename).parent_path().filename() == "tools") {
-      std::cout << FlagHelp(flag) << '\n';
-    }
+    const fs::path file(flag.filename);
+    if (file.parent_path().filename() != "tools") continue;
+    help[file.stem().string()] += FlagHelp(flag) + '\n';
+  }
+  return help;
+}
+
+void PrintHelp(const std::string& name, const std::string& usage) {
+  std::map<std::string, std::string> help = HelpByFile();
+  std::cout << usage << help[name];
+  help.erase(name);
+  for (const auto& [file, text] : help) {
+    std::cout << file.substr(0, file.find('_')) << ":\n" << text;
   }
   std::cout << "Also --flagfile=FILE (one flag a line), --helpfull.\n";
 }
@@ -88,14 +101,15 @@ void CheckNoArguments(int argc, char** argv) {
 }
 
 /// False if the program was only asked for help.
-bool ParseFlags(int argc, char** argv, const std::string& usage) {
+bool ParseFlags(int argc, char** argv, const std::string& name,
+                const std::string& usage) {
   gflags::SetUsageMessage(usage);
   GFLAGS_NAMESPACE::gflags_exitfunc = [](int code) {
     std::exit(code == 0 ? kExitDone : kExitBadInput);
   };
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, /*remove_flags=*/true);
   if (FLAGS_help || FLAGS_helpshort) {
-    PrintHelp(usage);
+    PrintHelp(name, usage);
     return false;
   }
   gflags::HandleCommandLineHelpFlags();
@@ -111,7 +125,7 @@ int ToolMain(int argc, char** argv, const std::string& usage,
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   try {
-    return ParseFlags(argc, argv, usage) ? body() : kExitDone;
+    return ParseFlags(argc, argv, name, usage) ? body() : kExitDone;
   } catch (const InputError& error) {
     std::cerr << name << ": " << error.what() << '\n';
     return kExitBadInput;

@@ -91,7 +91,8 @@ void ClearRun(const RunPaths& paths) {
         paths.HtmlReport()}) {
     fs::remove(path, ignored);
   }
-  for (const char* folder : {"surfaces", "pictures", "masks", "solver"}) {
+  for (const char* folder :
+       {"surfaces", "pictures", "masks", "detections", "solver"}) {
     fs::remove_all(fs::path(paths.root()) / folder, ignored);
   }
 }

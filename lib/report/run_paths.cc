@@ -31,6 +31,8 @@ std::string RunPaths::Evaluation() const { return Below("evaluation.json"); }
 std::string RunPaths::HtmlReport() const { return Below("report.html"); }
 std::string RunPaths::Pictures() const { return Below("pictures"); }
 
+std::string RunPaths::Detections() const { return Below("detections"); }
+
 std::string RunPaths::SolverReport(int frame) const {
   return Below("solver/" + FrameName(frame) + ".txt");
 }

@@ -14,15 +14,17 @@ class RunPaths {
 
   /// The run directory itself.
   const std::string& root() const { return root_; }
-  std::string Options() const;                ///< RUN/options.flags
-  std::string Calibration() const;            ///< RUN/calibration.txt
-  std::string Trajectory() const;             ///< RUN/trajectory.txt
-  std::string Frames() const;                 ///< RUN/frames.jsonl
-  std::string Iterations() const;             ///< RUN/iterations.csv
-  std::string Summary() const;                ///< RUN/summary.json
-  std::string Evaluation() const;             ///< RUN/evaluation.json
-  std::string HtmlReport() const;             ///< RUN/report.html
-  std::string Pictures() const;               ///< RUN/pictures
+  std::string Options() const;      ///< RUN/options.flags
+  std::string Calibration() const;  ///< RUN/calibration.txt
+  std::string Trajectory() const;   ///< RUN/trajectory.txt
+  std::string Frames() const;       ///< RUN/frames.jsonl
+  std::string Iterations() const;   ///< RUN/iterations.csv
+  std::string Summary() const;      ///< RUN/summary.json
+  std::string Evaluation() const;   ///< RUN/evaluation.json
+  std::string HtmlReport() const;   ///< RUN/report.html
+  std::string Pictures() const;     ///< RUN/pictures
+  /// RUN/detections, the masks of a network that ran inline.
+  std::string Detections() const;
   std::string SolverReport(int frame) const;  ///< RUN/solver/FRAME.txt
   /// RUN/pictures/FRAME_name.png
   std::string Picture(int frame, const std::string& name) const;

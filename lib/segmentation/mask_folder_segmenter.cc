@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "splitfusion/lib/base/error.h"
@@ -14,14 +12,6 @@ namespace splitfusion {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
-/// One entry of STEM.json.
-struct Detection {
-  int index = 0;
-  std::string class_name;
-  double score = 1;
-};
 
 /// Names of the files in `folder` with `extension`, in order.
 std::vector<std::string> ListFiles(const std::string& folder,
@@ -34,46 +24,6 @@ std::vector<std::string> ListFiles(const std::string& folder,
   }
   std::sort(names.begin(), names.end());
   return names;
-}
-
-Json ReadJson(const std::string& path) {
-  std::ifstream stream(path);
-  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_array()) {
-    throw InputError(path +
-                     ": no JSON list: expected [{\"index\": 1, "
-                     "\"class\": \"person\", \"score\": 0.9}, ...]");
-  }
-  return json;
-}
-
-Detection ParseDetection(const std::string& path, const Json& entry,
-                         const std::string& unnamed_class) {
-  Detection detection;
-  try {
-    detection.index = entry.at("index").get<int>();
-    detection.class_name = entry.value("class", unnamed_class);
-    detection.score = entry.value("score", 1.0);
-  } catch (const Json::exception&) {
-    detection.index = 0;
-  }
-  const bool ok = detection.index >= 1 && detection.index <= 65535 &&
-                  detection.score >= 0 && detection.score <= 1;
-  if (!ok) {
-    throw InputError(path + ": detection " + entry.dump() +
-                     ": expected an index of 1..65535, a class name and a "
-                     "score of 0..1");
-  }
-  return detection;
-}
-
-std::vector<Detection> ReadDetections(const std::string& path,
-                                      const std::string& unnamed_class) {
-  std::vector<Detection> detections;
-  for (const Json& entry : ReadJson(path)) {
-    detections.push_back(ParseDetection(path, entry, unnamed_class));
-  }
-  return detections;
 }
 
 std::vector<Detection> DetectionsOfValues(const cv::Mat& labels,
@@ -110,7 +60,8 @@ cv::Mat ReadMask(const std::string& path, const Frame& frame) {
 void AddInstance(const cv::Mat& mask, const Detection& detection,
                  std::vector<InstanceMask>* instances) {
   if (cv::countNonZero(mask) == 0) return;
-  instances->push_back({mask, detection.class_name, detection.score});
+  instances->push_back(
+      {mask, detection.class_name, detection.score, detection.box});
 }
 
 }  // namespace
@@ -135,6 +86,17 @@ MaskFolderSegmenter::MaskFolderSegmenter(const std::string& folder,
                        return name.find('_') == std::string::npos;
                      }),
       instance_files_.end());
+  const std::string list = (fs::path(folder) / kDetectionListFile).string();
+  if (fs::exists(list)) lists_ = ReadDetectionLists(list, unnamed_class);
+}
+
+std::vector<Detection> MaskFolderSegmenter::DetectionsOf(
+    const std::string& stem, const cv::Mat& labels) const {
+  const std::string own = (fs::path(folder_) / (stem + ".json")).string();
+  if (fs::exists(own)) return ReadDetections(own, unnamed_class_);
+  if (!lists_) return DetectionsOfValues(labels, unnamed_class_);
+  const auto found = lists_->find(stem);
+  return found == lists_->end() ? std::vector<Detection>() : found->second;
 }
 
 std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
@@ -143,12 +105,12 @@ std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
   const std::string label_path = (root / (frame.stem + ".png")).string();
   if (fs::exists(label_path)) {
     const cv::Mat labels = ReadMask(label_path, frame);
-    const std::string json_path = (root / (frame.stem + ".json")).string();
-    const std::vector<Detection> detections =
-        fs::exists(json_path) ? ReadDetections(json_path, unnamed_class_)
-                              : DetectionsOfValues(labels, unnamed_class_);
-    for (const Detection& detection : detections) {
-      AddInstance(labels == detection.index, detection, &instances);
+    for (const Detection& detection : DetectionsOf(frame.stem, labels)) {
+      const cv::Mat mask =
+          detection.mask.empty()
+              ? cv::Mat(labels == detection.index)
+              : cv::Mat(ReadMask((root / detection.mask).string(), frame) != 0);
+      AddInstance(mask, detection, &instances);
     }
   }
   const std::string prefix = frame.stem + "_";
@@ -168,7 +130,8 @@ std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
 std::string FindMaskFolder(const std::string& sequence) {
   const fs::path detected = fs::path(sequence) / "masks_noisy";
   if (fs::is_directory(detected) &&
-      !ListFiles(detected.string(), ".json").empty()) {
+      (fs::exists(detected / kDetectionListFile) ||
+       !ListFiles(detected.string(), ".json").empty())) {
     return detected.string();
   }
   const fs::path plain = fs::path(sequence) / "mask";

@@ -1,9 +1,11 @@
 #ifndef SPLITFUSION_LIB_SEGMENTATION_MASK_FOLDER_SEGMENTER_H_
 #define SPLITFUSION_LIB_SEGMENTATION_MASK_FOLDER_SEGMENTER_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/segmentation/detection_list.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
 
 namespace splitfusion {
@@ -18,6 +20,10 @@ inline constexpr char kUnnamedRigidClass[] = "rigid_object";
 ///  - `STEM.png`, 8 or 16 bit, pixel = index of the detection, 0 = none, with
 ///    `STEM.json` = [{"index", "class", "score", "bbox"}, ...]; pixels of an
 ///    index that the list does not name are left out;
+///  - `STEM.png` in a folder with `detections.jsonl`, which lists the
+///    detections of all frames, one a line: {"stem", "index", "class", "score",
+///    "box", "mask"}; `mask`, if given, is the file of the whole mask where
+///    other detections cover a part of it in STEM.png;
 ///  - `STEM.png` alone: every value above 0 is an instance without class (a
 ///    0/255 mask is one);
 ///  - `STEM_CLASS.png`, any number: one instance each, inside where not 0;
@@ -40,14 +46,19 @@ class MaskFolderSegmenter : public Segmenter {
   std::vector<InstanceMask> Segment(const Frame& frame) override;
 
  private:
+  std::vector<Detection> DetectionsOf(const std::string& stem,
+                                      const cv::Mat& labels) const;
+
   std::string folder_;
   std::string unnamed_class_;
   /// Instance files (`STEM_CLASS.png`) by file name.
   std::vector<std::string> instance_files_;
+  /// Content of detections.jsonl, if there is one.
+  std::optional<DetectionLists> lists_;
 };
 
 /// The masks found beside a sequence: `masks_noisy` if it holds detections
-/// (a json file), else `mask`, else an empty string.
+/// (a json or jsonl file), else `mask`, else an empty string.
 std::string FindMaskFolder(const std::string& sequence);
 
 }  // namespace splitfusion

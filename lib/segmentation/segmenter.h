@@ -14,6 +14,9 @@ struct InstanceMask {
   cv::Mat mask;            ///< HxW 8UC1, 255 inside, 0 outside.
   std::string class_name;  ///< COCO name, or "object" if the source has none.
   double score = 1.0;      ///< 0..1.
+  /// The detector's box, pixels (pixel (i, j) covers [i, i + 1) x [j, j + 1));
+  /// empty if the source has none.
+  cv::Rect2d box = {};
 };
 
 /// Source of instance masks (SplitFusion IV-A): files, or a network.

@@ -26,6 +26,7 @@ TEST(RunPaths, NamesSurfacesAndFrames) {
   EXPECT_EQ(paths.Surface(0, "background"), "run/surfaces/000_background");
   EXPECT_EQ(paths.Picture(120, "normals"), "run/pictures/000120_normals.png");
   EXPECT_EQ(paths.Mask("1311.25"), "run/masks/1311.25.png");
+  EXPECT_EQ(paths.Detections(), "run/detections");
   EXPECT_EQ(RunPaths::SurfaceName(1, "../a"), "001_.._a");
 }
 

@@ -1,0 +1,101 @@
+#include "splitfusion/lib/segmentation/detection_list.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+using Json = nlohmann::json;
+
+Json ReadJson(const std::string& path) {
+  std::ifstream stream(path);
+  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_array()) {
+    throw InputError(path +
+                     ": no JSON list: expected [{\"index\": 1, "
+                     "\"class\": \"person\", \"score\": 0.9}, ...]");
+  }
+  return json;
+}
+
+/// `path`: where the entry stands, for the message.
+Detection ParseDetection(const std::string& path, const Json& entry,
+                         const std::string& unnamed_class) {
+  Detection detection;
+  try {
+    detection.index = entry.at("index").get<int>();
+    detection.class_name = entry.value("class", unnamed_class);
+    detection.score = entry.value("score", 1.0);
+    detection.mask = entry.value("mask", "");
+    const auto corners = entry.value("box", std::vector<double>(4, 0.0));
+    detection.box = {cv::Point2d(corners.at(0), corners.at(1)),
+                     cv::Point2d(corners.at(2), corners.at(3))};
+  } catch (const std::exception&) {
+    detection.index = 0;
+  }
+  const bool ok = detection.index >= 1 && detection.index <= 65535 &&
+                  detection.score >= 0 && detection.score <= 1;
+  if (!ok) {
+    throw InputError(path + ": detection " + entry.dump() +
+                     ": expected an index of 1..65535, a class name, a score "
+                     "of 0..1 and, if any, the 4 corners of a box");
+  }
+  return detection;
+}
+
+/// To a tenth of a pixel, so that sums of corners and sizes stay short.
+double Tenths(double value) { return std::round(value * 10) / 10; }
+
+}  // namespace
+
+std::vector<Detection> ReadDetections(const std::string& path,
+                                      const std::string& unnamed_class) {
+  std::vector<Detection> detections;
+  for (const Json& entry : ReadJson(path)) {
+    detections.push_back(ParseDetection(path, entry, unnamed_class));
+  }
+  return detections;
+}
+
+DetectionLists ReadDetectionLists(const std::string& path,
+                                  const std::string& unnamed_class) {
+  std::ifstream stream(path);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  DetectionLists lists;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    const std::string place = path + ":" + std::to_string(number);
+    const Json entry = Json::parse(line, nullptr, /*allow_exceptions=*/false);
+    const bool has_stem = entry.is_object() && entry.contains("stem") &&
+                          entry["stem"].is_string();
+    if (!has_stem) {
+      throw InputError(place +
+                       ": expected an object with stem, index, class and "
+                       "score of one detection");
+    }
+    lists[entry["stem"]].push_back(ParseDetection(place, entry, unnamed_class));
+  }
+  return lists;
+}
+
+std::string DetectionLine(int frame, const std::string& stem,
+                          const Detection& detection) {
+  const cv::Rect2d& box = detection.box;
+  nlohmann::ordered_json line = {
+      {"frame", frame},
+      {"stem", stem},
+      {"index", detection.index},
+      {"class", detection.class_name},
+      {"score", detection.score},
+      {"box",
+       {Tenths(box.x), Tenths(box.y), Tenths(box.x + box.width),
+        Tenths(box.y + box.height)}}};
+  if (!detection.mask.empty()) line["mask"] = detection.mask;
+  return line.dump();
+}
+
+}  // namespace splitfusion

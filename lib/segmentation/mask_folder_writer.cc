@@ -1,0 +1,173 @@
+#include "splitfusion/lib/segmentation/mask_folder_writer.h"
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/segmentation/detection_list.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+using Settings = std::map<std::string, std::string>;
+
+constexpr char kSettingsFile[] = "segmentation.json";
+constexpr char kOverlapFolder[] = "overlaps";
+
+void WriteImage(const fs::path& path, const cv::Mat& image) {
+  WritePathAtomically(path.string(), [&](const std::string& temporary) {
+    bool written = false;
+    try {
+      written = cv::imwrite(temporary, image);
+    } catch (const cv::Exception&) {
+      written = false;
+    }
+    if (!written) {
+      throw InputError(path.string() +
+                       ": cannot be written (not writable or disk full)");
+    }
+  });
+}
+
+/// Stems of the label images in a folder; half-written ones, whose name begins
+/// with a dot, left out.
+std::set<std::string> LabelStems(const fs::path& folder) {
+  std::set<std::string> stems;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string stem = entry.path().stem().string();
+    if (entry.path().extension() == ".png" && stem[0] != '.') {
+      stems.insert(stem);
+    }
+  }
+  return stems;
+}
+
+Settings ReadSettings(const fs::path& path) {
+  std::ifstream stream(path);
+  const nlohmann::json json =
+      nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  try {
+    return json.get<Settings>();
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(path.string() +
+                     ": expected the settings of a segmentation, a JSON "
+                     "object of texts");
+  }
+}
+
+/// @throw InputError on the first difference.
+void CheckEqual(const fs::path& path, const Settings& found,
+                const Settings& wanted) {
+  for (const auto& [name, value] : wanted) {
+    const auto before = found.find(name);
+    if (before != found.end() && before->second == value) continue;
+    const bool is_long = value.find('\n') != std::string::npos;
+    throw InputError(
+        path.string() + ": masks were made with another " + name +
+        (is_long || before == found.end()
+             ? std::string()
+             : " (" + before->second + ", now " + value + ")") +
+        ": expected the same, another folder, or the option to overwrite");
+  }
+}
+
+/// Pixels of instance `i` that a better one has as well.
+bool IsCovered(const std::vector<InstanceMask>& instances, std::size_t i,
+               const cv::Mat& labels) {
+  return cv::countNonZero(instances[i].mask) !=
+         cv::countNonZero(labels == static_cast<int>(i + 1));
+}
+
+/// Painted from the last to the first, so that the best lies on top.
+cv::Mat LabelImageOf(const std::vector<InstanceMask>& instances,
+                     cv::Size size) {
+  cv::Mat labels = cv::Mat::zeros(size, CV_16UC1);
+  for (std::size_t i = instances.size(); i-- > 0;) {
+    labels.setTo(static_cast<double>(i + 1), instances[i].mask);
+  }
+  return labels;
+}
+
+}  // namespace
+
+MaskFolderWriter::MaskFolderWriter(const std::string& folder,
+                                   const Settings& settings)
+    : folder_(folder) {
+  const fs::path path = fs::path(folder) / kSettingsFile;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw InputError(folder + ": cannot be made a folder of masks");
+  }
+  if (fs::exists(path)) {
+    CheckEqual(path, ReadSettings(path), settings);
+  } else if (!LabelStems(folder).empty()) {
+    throw InputError(folder + ": holds png files without " + kSettingsFile +
+                     ": expected a new folder, or one of an earlier run");
+  }
+  WriteFileAtomically(path.string(), [&](std::ostream& out) {
+    out << nlohmann::json(settings).dump(1) << '\n';
+  });
+  FindCompleteFrames();
+}
+
+void MaskFolderWriter::FindCompleteFrames() {
+  const fs::path path = fs::path(folder_) / kDetectionListFile;
+  std::string kept;
+  if (fs::exists(path)) {
+    done_ = LabelStems(folder_);
+    std::ifstream stream(path);
+    for (std::string line; std::getline(stream, line);) {
+      const auto json = nlohmann::json::parse(line, nullptr, false);
+      const bool is_whole = json.is_object() && json.contains("stem");
+      if (is_whole && Has(json["stem"])) kept += line + "\n";
+    }
+  }
+  WriteFileAtomically(path.string(), [&](std::ostream& out) { out << kept; });
+}
+
+void MaskFolderWriter::AppendLines(const std::string& text) const {
+  const fs::path path = fs::path(folder_) / kDetectionListFile;
+  std::ofstream stream(path, std::ios::binary | std::ios::app);
+  stream << text << std::flush;
+  if (!stream) {
+    throw InputError(path.string() + ": cannot be written (disk full?)");
+  }
+}
+
+void MaskFolderWriter::Write(const Frame& frame,
+                             const std::vector<InstanceMask>& instances) {
+  const fs::path root(folder_);
+  const cv::Mat labels = LabelImageOf(instances, frame.color.size());
+  std::string lines;
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    Detection detection{static_cast<int>(i + 1), instances[i].class_name,
+                        instances[i].score, instances[i].box};
+    if (IsCovered(instances, i, labels)) {
+      detection.mask = std::string(kOverlapFolder) + "/" + frame.stem + "_" +
+                       std::to_string(detection.index) + ".png";
+      WriteImage(root / detection.mask, instances[i].mask);
+    }
+    lines += DetectionLine(frame.index, frame.stem, detection) + "\n";
+  }
+  AppendLines(lines);
+  WriteImage(root / (frame.stem + ".png"), labels);
+  done_.insert(frame.stem);
+}
+
+void ClearMaskFolder(const std::string& folder) {
+  const fs::path root(folder);
+  if (!fs::exists(root / kSettingsFile)) return;
+  for (const std::string& stem : LabelStems(root)) {
+    fs::remove(root / (stem + ".png"));
+  }
+  fs::remove_all(root / kOverlapFolder);
+  fs::remove(root / kDetectionListFile);
+  fs::remove(root / kSettingsFile);
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,21 @@
+#include "splitfusion/lib/segmentation/recording_segmenter.h"
+
+#include <utility>
+
+namespace splitfusion {
+
+RecordingSegmenter::RecordingSegmenter(
+    std::unique_ptr<Segmenter> source, const std::string& folder,
+    const std::map<std::string, std::string>& settings)
+    : source_(std::move(source)), folder_(folder), settings_(settings) {}
+
+std::vector<InstanceMask> RecordingSegmenter::Segment(const Frame& frame) {
+  if (!writer_) {
+    writer_ = std::make_unique<MaskFolderWriter>(folder_, settings_);
+  }
+  const std::vector<InstanceMask> instances = source_->Segment(frame);
+  writer_->Write(frame, instances);
+  return instances;
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,54 @@
+#ifndef SPLITFUSION_LIB_SEGMENTATION_YOLACT_DECODER_H_
+#define SPLITFUSION_LIB_SEGMENTATION_YOLACT_DECODER_H_
+
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/segmentation/network_decoder.h"
+
+namespace splitfusion {
+
+/// Outputs of YOLACT before its own detection step, with P priors, C classes
+/// and M prototypes; each may have a batch dimension of 1 in front.
+struct YolactOutputs {
+  NetworkTensor loc;    ///< `loc`, P x 4: boxes against the priors.
+  NetworkTensor conf;   ///< `conf`, P x (1 + C): softmax, column 0 background.
+  NetworkTensor mask;   ///< `mask`, P x M: coefficients after tanh.
+  NetworkTensor proto;  ///< `proto`, H x W x M: prototypes after ReLU.
+};
+
+/// Instances from the outputs: priors whose best class is above 0.05, fast
+/// non-maximum suppression of the best 200 of each class, masks
+/// sigmoid(proto * mask^T) cropped to the box (one prototype pixel wider).
+///
+/// @throw InputError on a wrong shape.
+std::vector<NetworkInstance> DecodeYolact(const YolactOutputs& outputs,
+                                          const DecoderInput& input,
+                                          const DecoderOptions& options);
+
+/// Fast NMS (Bolya et al. 2019): indices of the boxes whose overlap (IoU) with
+/// every better box, be it kept or not, is at most `threshold`.
+///
+/// @param boxes best score first.
+std::vector<int> FastNms(const std::vector<cv::Rect2f>& boxes,
+                         double threshold);
+
+/// YOLACT (the paper's network): the frame stretched to a square of 550
+/// pixels, colours normalised, RGB.
+class YolactDecoder : public NetworkDecoder {
+ public:
+  std::vector<std::string> OutputNames() const override;
+  cv::Size DefaultInputSize() const override { return {550, 550}; }
+  /// Width and height must be equal.
+  void CheckInputSize(cv::Size input) const override;
+  InputPlacement Place(cv::Size frame, cv::Size input) const override;
+  cv::Mat MakeInput(const cv::Mat& color,
+                    const InputPlacement& placement) const override;
+  std::vector<NetworkInstance> Decode(
+      const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
+      const DecoderOptions& options) const override;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SEGMENTATION_YOLACT_DECODER_H_

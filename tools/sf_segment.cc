@@ -1,0 +1,178 @@
+// Makes the instance masks of a sequence with a network.
+
+#include <gflags/gflags.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network_flags.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/peak_memory.h"
+#include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/report/detection_picture.h"
+#include "splitfusion/lib/report/frame_pictures.h"
+#include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+#include "splitfusion/lib/segmentation/mask_folder_writer.h"
+#include "splitfusion/lib/sequence/association_list.h"
+#include "splitfusion/lib/sequence/image_file.h"
+#include "splitfusion/lib/sequence/tum_reader.h"
+#include "tool_main.h"
+
+DEFINE_string(sequence, "", "Folder of the sequence, TUM RGB-D layout.");
+DEFINE_string(output, "", "Folder of masks to write, or to go on with.");
+DEFINE_bool(overwrite, false, "Begin anew what is in --output.");
+DEFINE_string(overlays, "", "Folder for pictures of the masks; empty = none.");
+DEFINE_int32(first_frame, 0, "Frames before it are skipped.");
+DEFINE_int32(max_frames, 0, "Frames at most; 0 = all.");
+DEFINE_int32(threads, 2, "Threads of the network.");
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kUsage[] =
+    "Makes the instance masks of an RGB-D sequence with a network, for\n"
+    "sf_run --masks=MASKS. Stopped and started again, it goes on.\n"
+    "  sf_segment --sequence=DIR --model=FILE.onnx --decoder=yolov8seg|yolact\n"
+    "             --output=MASKS [--overlays=DIR]\n";
+
+/// Colour images of the sequence with the stems of their depth images.
+class ColorFrames {
+ public:
+  ColorFrames() {
+    TumReaderOptions options;
+    options.first_frame = FLAGS_first_frame;
+    options.max_frames = FLAGS_max_frames;
+    options.Check();
+    pairs_ = FindAssociations(FLAGS_sequence, options.association_tolerance);
+    first_ = options.first_frame;
+    const int all = static_cast<int>(pairs_.size());
+    CheckOption(first_ < all, "--first_frame", first_,
+                "less than " + std::to_string(all) + ", the number of frames");
+    end_ = options.max_frames > 0 ? std::min(all, first_ + options.max_frames)
+                                  : all;
+  }
+
+  int first() const { return first_; }
+  int end() const { return end_; }
+
+  std::string Stem(int index) const {
+    return fs::path(pairs_[index].depth.file).stem().string();
+  }
+
+  Frame Read(int index) const {
+    Frame frame;
+    frame.index = index;
+    frame.timestamp = pairs_[index].depth.timestamp;
+    frame.stem = Stem(index);
+    frame.color = ReadColorImage(
+        (fs::path(FLAGS_sequence) / pairs_[index].color.file).string());
+    return frame;
+  }
+
+ private:
+  std::vector<AssociatedFiles> pairs_;
+  int first_ = 0;
+  int end_ = 0;
+};
+
+/// One pass over the sequence.
+class Segmentation {
+ public:
+  Segmentation()
+      : network_(NetworkOptionsFromFlags()),
+        writer_(FLAGS_output, network_.Settings()) {}
+
+  void Execute() {
+    for (int index = frames_.first(); index < frames_.end(); ++index) {
+      if (!IsDone(frames_.Stem(index))) Process(frames_.Read(index));
+      PrintProgress(index + 1);
+    }
+    std::printf(
+        "%d frames, %d of them now, %d instances, %.3f s a frame, peak memory "
+        "%.0f MB\n",
+        frames_.end() - frames_.first(), segmented_, instances_,
+        segmented_ > 0 ? seconds_ / segmented_ : 0.0, PeakMemoryBytes() / 1e6);
+  }
+
+ private:
+  static std::string OverlayPath(const std::string& stem) {
+    return (fs::path(FLAGS_overlays) / (stem + ".png")).string();
+  }
+
+  bool IsDone(const std::string& stem) const {
+    return writer_.Has(stem) &&
+           (FLAGS_overlays.empty() || fs::exists(OverlayPath(stem)));
+  }
+
+  void Process(const Frame& frame) {
+    const std::vector<InstanceMask> instances =
+        writer_.Has(frame.stem) ? ReadBack(frame) : Segment(frame);
+    if (FLAGS_overlays.empty()) return;
+    WritePng(OverlayPath(frame.stem), DetectionPicture(frame.color, instances));
+  }
+
+  std::vector<InstanceMask> Segment(const Frame& frame) {
+    const Stopwatch stopwatch;
+    std::vector<InstanceMask> instances = network_.Segment(frame);
+    seconds_ += stopwatch.Seconds();
+    ++segmented_;
+    instances_ += static_cast<int>(instances.size());
+    writer_.Write(frame, instances);
+    return instances;
+  }
+
+  /// Masks of an earlier start, for their picture.
+  std::vector<InstanceMask> ReadBack(const Frame& frame) {
+    if (!earlier_) earlier_.emplace(FLAGS_output);
+    return earlier_->Segment(frame);
+  }
+
+  void PrintProgress(int end) const {
+    if (!isatty(STDERR_FILENO)) return;
+    const int left = frames_.end() - end;
+    const double a_frame =
+        segmented_ > 0 ? since_start_.Seconds() / segmented_ : 0.0;
+    std::fprintf(stderr, "\r\033[Kframe %d/%d, %d instances, %.0f s left",
+                 end - frames_.first(), frames_.end() - frames_.first(),
+                 instances_, a_frame * left);
+    if (left == 0) std::fputc('\n', stderr);
+  }
+
+  ColorFrames frames_;
+  NetworkSegmenter network_;
+  MaskFolderWriter writer_;
+  std::optional<MaskFolderSegmenter> earlier_;
+  Stopwatch since_start_;
+  double seconds_ = 0;  // In the network, its input and its outputs.
+  int segmented_ = 0;
+  int instances_ = 0;
+};
+
+int Run() {
+  CheckOption(!FLAGS_sequence.empty(), "--sequence", "''",
+              "the folder of a sequence");
+  CheckOption(!FLAGS_output.empty(), "--output", "''", "a folder to write");
+  CheckOption(FLAGS_threads >= 1, "--threads", FLAGS_threads, ">= 1");
+  const tbb::global_control threads(
+      tbb::global_control::max_allowed_parallelism,
+      static_cast<std::size_t>(FLAGS_threads));
+  cv::setNumThreads(FLAGS_threads);
+  if (FLAGS_overwrite) ClearMaskFolder(FLAGS_output);
+  Segmentation().Execute();
+  return kExitDone;
+}
+
+}  // namespace
+}  // namespace splitfusion
+
+int main(int argc, char** argv) {
+  return splitfusion::ToolMain(argc, argv, splitfusion::kUsage,
+                               splitfusion::Run);
+}
