@@ -42,15 +42,16 @@ bool Record(const ChildResult& child, BatchResult* result) {
 bool Reconstruct(const BatchOptions& options, BatchResult* result) {
   const BatchRun& run = result->run;
   const RunPaths paths(run.folder);
-  result->skipped = !options.overwrite && fs::exists(paths.Summary());
+  result->skipped = !options.overwrite && IsComplete(paths);
   if (result->skipped) return true;
   ClearRun(paths);
-  std::vector<std::string> arguments = {options.run_program,
-                                        "--sequence=" + run.sequence_folder,
-                                        "--output=" + run.folder};
+  std::vector<std::string> arguments = {options.run_program};
   if (!run.option_file.empty()) {
     arguments.push_back("--flagfile=" + run.option_file);
   }
+  // Last, so that they win over those of an earlier run's options.flags.
+  arguments.push_back("--sequence=" + run.sequence_folder);
+  arguments.push_back("--output=" + run.folder);
   return Record(RunChild(arguments, run.folder + "/run"), result);
 }
 

@@ -37,8 +37,8 @@ MeshRendering RenderMeshes(const SurfaceMap& surfaces,
 /// Renders one surface as if no other hid it.
 MeshRendering RenderAlone(const Surface& surface, const PinholeCamera& camera);
 
-/// The rigid background, ray-cast under its current motion for every `stride`-th
-/// pixel of `camera`; empty if there is none.
+/// The rigid background, ray-cast under its current motion for every
+/// `stride`-th pixel of `camera`; empty if there is none.
 ModelMap RenderBackground(const SurfaceMap& surfaces,
                           const PinholeCamera& camera, int stride,
                           const RayCastOptions& options);

@@ -38,6 +38,7 @@ PipelineOptions::PipelineOptions() {
   object.tsdf.voxel_size = 0.005;
   object.tsdf.truncation = 0.030;
   object.min_piece_area = 0.0025;
+  object.tsdf.max_free_weight = 3;
 }
 
 void PipelineOptions::Check() const {

@@ -180,9 +180,8 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
   *graph = start;
   TrackRigid(samples, live, surface, graph, report);
   // The turn of a body far away must not count as a way travelled.
-  const Eigen::Vector3d pivot = surface == 0
-                                    ? Eigen::Vector3d::Zero().eval()
-                                    : CentroidOf(samples, start);
+  const Eigen::Vector3d pivot = surface == 0 ? Eigen::Vector3d::Zero().eval()
+                                             : CentroidOf(samples, start);
   Rigid3d motion = MeanRigidMotion(*graph) * MeanRigidMotion(start).inverse();
   motion.translation() = motion * pivot - pivot;
   report->reason = ReasonForLoss(motion, *report);

@@ -56,6 +56,8 @@ DEFINE_double(object_voxel, 0.005, "Metres.");
 DEFINE_double(background_truncation, 0.04, "Metres.");
 DEFINE_double(object_truncation, 0.03, "Metres.");
 DEFINE_double(max_weight, 64, "Cap of the running mean.");
+DEFINE_double(object_free_weight, 3,
+              "The same where an object was found gone.");
 DEFINE_double(background_min_piece, 0.01,
               "Smaller pieces of the final mesh are left out, m^2.");
 DEFINE_double(object_min_piece, 0.0025, "Likewise.");
@@ -122,11 +124,12 @@ void SetModel(PipelineOptions* options) {
   options->background.graph = graph;
   options->object.graph = graph;
   options->background.tsdf = {FLAGS_background_voxel,
-                              FLAGS_background_truncation, FLAGS_max_weight};
+                              FLAGS_background_truncation, FLAGS_max_weight,
+                              FLAGS_max_weight};
   options->background.min_piece_area = FLAGS_background_min_piece;
   options->object.min_piece_area = FLAGS_object_min_piece;
   options->object.tsdf = {FLAGS_object_voxel, FLAGS_object_truncation,
-                          FLAGS_max_weight};
+                          FLAGS_max_weight, FLAGS_object_free_weight};
 }
 
 }  // namespace
@@ -166,6 +169,10 @@ std::string FlagfileText() {
   for (const gflags::CommandLineFlagInfo& flag : flags) {
     const std::string file =
         std::filesystem::path(flag.filename).filename().string();
+    // Where a run goes is not a part of what it does:
+    // --flagfile=RUN/options.flags
+    // --output=NEW repeats it.
+    if (flag.name == "output" || flag.name == "overwrite") continue;
     const bool ours = file == "sf_run.cc" || file == "run_flags.cc" ||
                       file == "network_flags.cc";
     if (ours) text += "--" + flag.name + "=" + flag.current_value + "\n";

@@ -5,9 +5,13 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <iomanip>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "network_flags.h"
@@ -44,6 +48,27 @@ DECLARE_string(preset);
 namespace splitfusion {
 namespace {
 
+/// Set by the first SIGINT or SIGTERM: the frame is finished and everything
+/// written. The second one ends the program.
+volatile std::sig_atomic_t interrupted = 0;
+
+void Interrupt(int signal) {
+  interrupted = 1;
+  std::signal(signal, SIG_DFL);
+}
+
+/// Refuses to clear a folder that the run is to read from.
+void CheckNotInOutput(const std::string& flag, const std::string& input) {
+  namespace fs = std::filesystem;
+  if (!FLAGS_overwrite || input.empty() || !fs::exists(input)) return;
+  const fs::path output = fs::weakly_canonical(FLAGS_output);
+  const fs::path path = fs::weakly_canonical(input);
+  const auto end =
+      std::mismatch(output.begin(), output.end(), path.begin(), path.end());
+  CheckOption(end.first != output.end(), flag, input,
+              "a folder outside of --output, which is overwritten");
+}
+
 /// The network of the flags; its masks are kept in the run directory.
 std::shared_ptr<Segmenter> MakeNetworkSegmenter() {
   CheckOption(FLAGS_masks == "auto", "--masks", FLAGS_masks,
@@ -54,15 +79,30 @@ std::shared_ptr<Segmenter> MakeNetworkSegmenter() {
       std::move(network), RunPaths(FLAGS_output).Detections(), settings);
 }
 
-std::shared_ptr<Segmenter> MakeSegmenter() {
+/// @throw InputError if no frame has a mask: names of another image do not fit.
+void CheckMasksFit(const TumReader& reader,
+                   const MaskFolderSegmenter& segmenter,
+                   const std::string& folder) {
+  for (int i = 0; i < reader.size(); ++i) {
+    if (segmenter.Has(reader.Stem(i))) return;
+  }
+  throw InputError(folder + ": no mask for any of the " +
+                   std::to_string(reader.size()) +
+                   " frames: expected names by the depth image, such as " +
+                   reader.Stem(0) + ".png");
+}
+
+std::shared_ptr<Segmenter> MakeSegmenter(const TumReader& reader) {
   if (HasNetworkFlags()) return MakeNetworkSegmenter();
   std::string folder = FLAGS_masks;
   if (folder == "auto") folder = FindMaskFolder(FLAGS_sequence);
   if (folder.empty() || folder == "none") return nullptr;
   CheckOption(FLAGS_mask_kind == "rigid" || FLAGS_mask_kind == "non_rigid",
               "--mask_kind", FLAGS_mask_kind, "rigid or non_rigid");
-  return std::make_shared<MaskFolderSegmenter>(
+  auto segmenter = std::make_shared<MaskFolderSegmenter>(
       folder, FLAGS_mask_kind == "rigid" ? kUnnamedRigidClass : kUnnamedClass);
+  CheckMasksFit(reader, *segmenter, folder);
+  return segmenter;
 }
 
 /// One run: frames in, run directory out.
@@ -73,7 +113,7 @@ class Run {
         fusion_(reader_.camera(), PipelineOptionsFromFlags(),
                 FLAGS_labels.empty() ? LabelTable()
                                      : LabelTable::FromFile(FLAGS_labels),
-                MakeSegmenter()),
+                MakeSegmenter(reader_)),
         directory_(FLAGS_output, FLAGS_overwrite,
                    {FLAGS_preset, FlagfileText(), LibraryVersions()}) {
     WriteCalibration();
@@ -81,15 +121,20 @@ class Run {
 
   void Execute() {
     try {
-      while (ProcessNext()) {
+      while (interrupted == 0 && ProcessNext()) {
       }
-    } catch (const InputError&) {
+    } catch (const std::exception&) {
       // A broken frame ends the run; what was computed until then is kept.
       std::fputs(isatty(STDERR_FILENO) ? "\n" : "", stderr);
-      WriteResults();
+      WriteResults(/*complete=*/false);
       throw;
     }
-    WriteResults();
+    WriteResults(done_ == reader_.size());
+    if (done_ == reader_.size()) return;
+    throw std::runtime_error("interrupted after " + std::to_string(done_) +
+                             " of " + std::to_string(reader_.size()) +
+                             " frames; what was computed is in " +
+                             FLAGS_output);
   }
 
  private:
@@ -143,7 +188,7 @@ class Run {
                         scene.map.color, depth, scene.map.normals});
   }
 
-  void WriteResults() {
+  void WriteResults(bool complete) {
     const Stopwatch writing;
     fusion_.Finish();
     for (const auto& [id, surface] : fusion_.surfaces()) {
@@ -153,7 +198,7 @@ class Run {
           static_cast<int>(surface->mesh().vertices.size()));
     }
     directory_.AddWritingSeconds(writing.Seconds());
-    directory_.Finish();
+    directory_.Finish(complete);
   }
 
   void PrintProgress() const {
@@ -177,6 +222,10 @@ int RunSequence() {
               "the folder of a sequence");
   CheckOption(!FLAGS_output.empty(), "--output", "''", "a folder to write");
   CheckOption(FLAGS_threads >= 1, "--threads", FLAGS_threads, ">= 1");
+  CheckNotInOutput("--sequence", FLAGS_sequence);
+  CheckNotInOutput("--masks", FLAGS_masks);
+  std::signal(SIGINT, Interrupt);
+  std::signal(SIGTERM, Interrupt);
   const tbb::global_control threads(
       tbb::global_control::max_allowed_parallelism,
       static_cast<std::size_t>(FLAGS_threads));

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -87,7 +88,7 @@ class Segmentation {
  public:
   Segmentation()
       : network_(NetworkOptionsFromFlags()),
-        writer_(FLAGS_output, network_.Settings()) {}
+        writer_(FLAGS_output, SettingsOf(network_)) {}
 
   void Execute() {
     for (int index = frames_.first(); index < frames_.end(); ++index) {
@@ -102,6 +103,14 @@ class Segmentation {
   }
 
  private:
+  /// A folder holds the masks of one sequence by one network.
+  static std::map<std::string, std::string> SettingsOf(
+      const NetworkSegmenter& network) {
+    std::map<std::string, std::string> settings = network.Settings();
+    settings["sequence"] = fs::weakly_canonical(FLAGS_sequence).string();
+    return settings;
+  }
+
   static std::string OverlayPath(const std::string& stem) {
     return (fs::path(FLAGS_overlays) / (stem + ".png")).string();
   }
@@ -160,6 +169,10 @@ int Run() {
               "the folder of a sequence");
   CheckOption(!FLAGS_output.empty(), "--output", "''", "a folder to write");
   CheckOption(FLAGS_threads >= 1, "--threads", FLAGS_threads, ">= 1");
+  CheckOption(fs::weakly_canonical(FLAGS_output) !=
+                  fs::weakly_canonical(FLAGS_sequence),
+              "--output", FLAGS_output,
+              "another folder than the sequence itself");
   const tbb::global_control threads(
       tbb::global_control::max_allowed_parallelism,
       static_cast<std::size_t>(FLAGS_threads));

@@ -101,10 +101,9 @@ struct Search {
 
 float MedianDepth(std::vector<GridPoint> points) {
   const auto middle = points.begin() + points.size() / 2;
-  std::nth_element(points.begin(), middle, points.end(),
-                   [](const GridPoint& a, const GridPoint& b) {
-                     return a.depth < b.depth;
-                   });
+  std::nth_element(
+      points.begin(), middle, points.end(),
+      [](const GridPoint& a, const GridPoint& b) { return a.depth < b.depth; });
   return middle->depth;
 }
 
@@ -135,9 +134,9 @@ std::optional<Rigid3d> FindImageShift(const cv::Mat_<float>& model,
   if (best.hits < kMinExplained * comparable) return std::nullopt;
   const double z = MedianDepth(search.own);
   Rigid3d motion = Rigid3d::Identity();
-  motion.translation() = Eigen::Vector3d(best.du * step * z / live.camera.fx,
-                                         best.dv * step * z / live.camera.fy,
-                                         kLayer * best.layer);
+  motion.translation() =
+      Eigen::Vector3d(best.du * step * z / live.camera.fx,
+                      best.dv * step * z / live.camera.fy, kLayer * best.layer);
   return motion;
 }
 

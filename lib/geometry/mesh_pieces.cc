@@ -26,8 +26,7 @@ class Pieces {
 
 float Area(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
   const Eigen::Vector3f& a = mesh.vertices[t[0]];
-  return 0.5f *
-         (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+  return 0.5f * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
 }
 
 /// Area of the piece that each vertex stands for; 0 if for none.

@@ -1,8 +1,10 @@
 #include "splitfusion/lib/report/run_directory.h"
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
@@ -24,6 +26,30 @@ bool IsUsed(const std::string& root) {
   return false;
 }
 
+/// All that a run writes.
+std::vector<std::string> Contents(const RunPaths& paths) {
+  std::vector<std::string> contents = {paths.Options(),    paths.Calibration(),
+                                       paths.Trajectory(), paths.Frames(),
+                                       paths.Iterations(), paths.Summary(),
+                                       paths.Evaluation(), paths.HtmlReport()};
+  for (const char* folder :
+       {"surfaces", "pictures", "masks", "detections", "solver"}) {
+    contents.push_back((fs::path(paths.root()) / folder).string());
+  }
+  return contents;
+}
+
+/// @throw InputError if clearing the folder would delete what no run wrote.
+void CheckIsRun(const RunPaths& paths) {
+  if (fs::exists(paths.Options())) return;
+  for (const std::string& path : Contents(paths)) {
+    if (fs::exists(path)) {
+      throw InputError(path + ": is not of a run, for " + paths.Options() +
+                       " is missing; expected a run directory to overwrite");
+    }
+  }
+}
+
 void MakeRoot(const std::string& root, bool overwrite) {
   std::error_code error;
   fs::create_directories(root, error);
@@ -31,9 +57,11 @@ void MakeRoot(const std::string& root, bool overwrite) {
     throw InputError(root + ": cannot be made a run directory (" +
                      (error ? error.message() : "not a directory") + ")");
   }
+  if (!IsUsed(root)) return;
   if (overwrite) {
+    CheckIsRun(RunPaths(root));
     ClearRun(RunPaths(root));
-  } else if (IsUsed(root)) {
+  } else {
     throw InputError(root +
                      ": is not empty; expected a new or empty run "
                      "directory, or the option to overwrite");
@@ -85,16 +113,15 @@ void WriteText(const std::string& path, const std::string& text) {
 
 void ClearRun(const RunPaths& paths) {
   std::error_code ignored;
-  for (const std::string& path :
-       {paths.Options(), paths.Calibration(), paths.Trajectory(),
-        paths.Frames(), paths.Iterations(), paths.Summary(), paths.Evaluation(),
-        paths.HtmlReport()}) {
-    fs::remove(path, ignored);
+  for (const std::string& path : Contents(paths)) {
+    fs::remove_all(path, ignored);
   }
-  for (const char* folder :
-       {"surfaces", "pictures", "masks", "detections", "solver"}) {
-    fs::remove_all(fs::path(paths.root()) / folder, ignored);
-  }
+}
+
+bool IsComplete(const RunPaths& paths) {
+  std::ifstream stream(paths.Summary());
+  const auto summary = nlohmann::json::parse(stream, nullptr, false);
+  return summary.is_object() && summary.value("complete", false);
 }
 
 RunDirectory::RunDirectory(const std::string& root, bool overwrite,
@@ -138,8 +165,10 @@ RunSummary RunDirectory::Summary() const {
   return summary;
 }
 
-void RunDirectory::Finish() const {
-  const nlohmann::ordered_json summary = ToJson(Summary());
+void RunDirectory::Finish(bool complete) const {
+  RunSummary facts = Summary();
+  facts.complete = complete;
+  const nlohmann::ordered_json summary = ToJson(facts);
   WriteHtmlReport(paths_, summary);
   WriteText(paths_.Summary(), JsonText(summary, 2) + "\n");
 }

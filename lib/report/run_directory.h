@@ -23,6 +23,9 @@ struct RunFacts {
 /// A missing directory is fine.
 void ClearRun(const RunPaths& paths);
 
+/// Whether the summary of a run is there and says that it is complete.
+bool IsComplete(const RunPaths& paths);
+
 /// Writes the report of a run while it happens: after every frame the lines of
 /// that frame are on disk, so a crash leaves the account of all frames before.
 /// Formats: docs/report_format.md.
@@ -57,11 +60,11 @@ class RunDirectory {
   /// Summary of the frames so far.
   RunSummary Summary() const;
 
-  /// Writes summary.json and report.html; the last call of a run, for
-  /// summary.json marks the run as complete.
+  /// Writes summary.json and report.html; the last call of a run. `complete`:
+  /// whether the whole sequence was processed; it is in the summary.
   ///
   /// @throw InputError if a file cannot be written.
-  void Finish() const;
+  void Finish(bool complete = true) const;
 
  private:
   void OpenStreams();

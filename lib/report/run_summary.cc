@@ -41,7 +41,8 @@ Json SecondsPerFrame(const RunSummary& summary) {
 Json ToJson(const RunSummary& summary) {
   Json surfaces = Json::array();
   for (const auto& item : summary.surfaces) surfaces.push_back(ToJson(item));
-  return {{"preset", summary.preset},
+  return {{"complete", summary.complete},
+          {"preset", summary.preset},
           {"frames", summary.frames},
           {"lost_frames", summary.lost_frames},
           {"seconds_per_frame", SecondsPerFrame(summary)},

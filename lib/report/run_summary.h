@@ -28,7 +28,8 @@ struct SurfaceSummary {
 
 /// What `summary.json` holds.
 struct RunSummary {
-  std::string preset;                           ///< Name of the preset.
+  bool complete = true;  ///< False if the run ended before the sequence did.
+  std::string preset;    ///< Name of the preset.
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.
   int lost_frames = 0;        ///< Frames in which any surface was lost.

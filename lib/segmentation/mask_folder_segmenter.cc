@@ -99,6 +99,15 @@ std::vector<Detection> MaskFolderSegmenter::DetectionsOf(
   return found == lists_->end() ? std::vector<Detection>() : found->second;
 }
 
+bool MaskFolderSegmenter::Has(const std::string& stem) const {
+  const std::string prefix = stem + "_";
+  return fs::exists(fs::path(folder_) / (stem + ".png")) ||
+         std::any_of(instance_files_.begin(), instance_files_.end(),
+                     [&](const std::string& name) {
+                       return name.compare(0, prefix.size(), prefix) == 0;
+                     });
+}
+
 std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
   std::vector<InstanceMask> instances;
   const fs::path root(folder_);

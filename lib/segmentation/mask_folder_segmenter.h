@@ -45,6 +45,9 @@ class MaskFolderSegmenter : public Segmenter {
   ///     frame.
   std::vector<InstanceMask> Segment(const Frame& frame) override;
 
+  /// Whether there is a file for the frame of this stem.
+  bool Has(const std::string& stem) const;
+
  private:
   std::vector<Detection> DetectionsOf(const std::string& stem,
                                       const cv::Mat& labels) const;

@@ -75,6 +75,10 @@ void TumReader::CheckSize(const std::string& path, const cv::Mat& image) const {
                    ", the size of the calibration");
 }
 
+std::string TumReader::Stem(int i) const {
+  return fs::path(pairs_.at(i).depth.file).stem().string();
+}
+
 std::optional<Frame> TumReader::Next() {
   if (next_ >= size()) return std::nullopt;
   const AssociatedFiles& pair = pairs_[next_];

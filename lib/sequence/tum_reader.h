@@ -47,6 +47,9 @@ class TumReader : public SequenceReader {
   int size() const override { return static_cast<int>(pairs_.size()); }
   std::optional<Frame> Next() override;
 
+  /// Stem of the depth file of the i-th frame that is read, 0..size() - 1.
+  std::string Stem(int i) const;
+
   /// Intrinsics and depth scale in use.
   const Calibration& calibration() const { return calibration_; }
 

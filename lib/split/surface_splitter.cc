@@ -145,9 +145,8 @@ void SurfaceSplitter::CutSegments(Work* work) const {
     Segment& segment = segments[i];
     const SurfaceObservation observation =
         Observe(segment, MasksOfOthers(i, *work), *work);
-    segment.evidence =
-        GatherEvidence(observation, work->compared, options_.graph_cut,
-                       options_.prior);
+    segment.evidence = GatherEvidence(observation, work->compared,
+                                      options_.graph_cut, options_.prior);
     if (segment.evidence.crop.area() == 0) return;
     segment.foreground =
         CutForeground(work->points, work->frame.color, segment.evidence.crop,
@@ -261,8 +260,9 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
                                   const Work& work) {
   const int hits = births_.Add(work.frame.index, segment.mask);
   if (frames_ == 1 && segment.score >= options_.confident_score) return true;
-  const cv::Mat mapped = pixels & (work.prior.labels == 0) &
-                         (work.compared.agreement == static_cast<int>(Agreement::kSame));
+  const cv::Mat mapped =
+      pixels & (work.prior.labels == 0) &
+      (work.compared.agreement == static_cast<int>(Agreement::kSame));
   const bool was_background =
       frames_ > kEarlyFrames &&
       2 * cv::countNonZero(mapped) > cv::countNonZero(pixels);
@@ -312,8 +312,8 @@ bool SurfaceSplitter::IsCovered(const Segment& part, int body_index,
       registry_.at(body.surface).class_name != part.class_name) {
     return false;
   }
-  const Overlap overlap = ComputeOverlap(body.mask, part.surface,
-                                         work.prior.labels, work.compared.agreement);
+  const Overlap overlap = ComputeOverlap(
+      body.mask, part.surface, work.prior.labels, work.compared.agreement);
   const MatchOptions limits;
   if (overlap.covered * overlap.agreement < limits.min_contained) return false;
   const cv::Mat_<uchar> seen =

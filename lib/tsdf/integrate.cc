@@ -54,7 +54,8 @@ void VoxelUpdater::Update(const Eigen::Vector3f& p, float* distance,
                              (*bgr)[0] / 255.0f);
     *color += blend * (rgb - *color);
   }
-  *weight = std::min(sum, max_weight);
+  const bool emptied = free_space && *distance > 0.9f * truncation;
+  *weight = std::min(sum, emptied ? max_free_weight : max_weight);
 }
 
 }  // namespace internal
@@ -113,7 +114,8 @@ void IntegrateRigid(const DepthObservation& observation,
       internal::CollectLeaves(volume);
   const internal::VoxelUpdater updater{
       observation, static_cast<float>(volume->options().truncation),
-      static_cast<float>(volume->options().max_weight)};
+      static_cast<float>(volume->options().max_weight),
+      static_cast<float>(volume->options().max_free_weight)};
   const Rigid3f motion = camera_from_canonical.cast<float>();
   const float voxel = static_cast<float>(volume->options().voxel_size);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 16),

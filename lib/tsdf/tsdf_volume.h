@@ -19,6 +19,9 @@ struct TsdfOptions {
   double voxel_size = 0.01;  ///< Metres.
   double truncation = 0.04;  ///< Metres; at least 2 voxels.
   double max_weight = 64;    ///< Cap of the running mean's weight.
+  /// The same where space was found empty: how long something that comes back
+  /// takes to be believed.
+  double max_free_weight = 64;
 
   /// @throw InputError if a value is out of its range.
   void Check() const;

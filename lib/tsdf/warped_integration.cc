@@ -129,7 +129,8 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
       internal::CollectLeaves(volume);
   const internal::VoxelUpdater updater{
       observation, static_cast<float>(volume->options().truncation),
-      static_cast<float>(volume->options().max_weight)};
+      static_cast<float>(volume->options().max_weight),
+      static_cast<float>(volume->options().max_free_weight)};
   const float voxel = static_cast<float>(volume->options().voxel_size);
   std::vector<LeafLattice*> lattices;
   std::vector<std::size_t> missing;

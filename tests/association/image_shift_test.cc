@@ -40,8 +40,7 @@ TEST(FindImageShift, AHalfHiddenBodyIsNotPulledToItsCentroid) {
   const cv::Rect hiding(120, 64, 48, 56);
   live.labels(hiding) = 2;
   live.depth(hiding) = 1.5f;
-  const auto shift =
-      FindImageShift(ModelOf({96, 64, 48, 112}, 2.0f), live, 1);
+  const auto shift = FindImageShift(ModelOf({96, 64, 48, 112}, 2.0f), live, 1);
   ASSERT_TRUE(shift);
   EXPECT_NEAR(shift->translation().x(), 24 * 2.0 / 260, 0.07);
   // The centroid of what is seen is 28 pixels lower: 0.22 m.

@@ -31,7 +31,11 @@ case "$sequence" in
   *bad) echo "warning" >&2; echo "bad/rgb.txt: cannot be opened" >&2; exit 2 ;;
   *crash) kill -SEGV $$ ;;
 esac
-echo '{"frames": 10, "lost_frames": 1, "peak_memory_bytes": 1048576,
+case "$sequence" in
+  *cut) echo '{"complete": false, "frames": 4}' > "$output/summary.json"
+        echo "cut/depth/5.png: is broken" >&2; exit 2 ;;
+esac
+echo '{"complete": true, "frames": 10, "lost_frames": 1, "peak_memory_bytes": 1048576,
   "seconds_per_frame": {"median": 0.5, "mean": 0.75}}' > "$output/summary.json"
 )";
 
@@ -124,6 +128,17 @@ TEST_F(BatchTest, FinishedRunsAreKeptAndFailedOnesRepeated) {
   results = RunBatch(options_);
   EXPECT_EQ(Starts(), 5u);
   EXPECT_FALSE(results[1].skipped);
+}
+
+TEST_F(BatchTest, ARunThatKeptAPartIsNoSuccess) {
+  AddSequence("cut");
+  for (int i = 0; i < 2; ++i) {
+    const auto results = RunBatch(options_);
+    EXPECT_EQ(results[0].exit_code, 2);
+    EXPECT_FALSE(results[0].skipped);
+    EXPECT_EQ(results[0].figures.frames, 4);
+  }
+  EXPECT_EQ(Starts(), 2u);
 }
 
 TEST_F(BatchTest, ResultsKeepTheirOrderWithSeveralJobs) {

@@ -1,5 +1,7 @@
 // The method on the first frames of real and rendered sequences.
 
+#include "support/shared_data.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 #include "splitfusion/lib/sequence/tum_reader.h"
 #include "splitfusion/pipelines/split_fusion.h"
-#include "support/shared_data.h"
 
 namespace splitfusion {
 namespace {
@@ -19,16 +20,16 @@ constexpr int kFrames = 12;
 /// Result of processing the first frames of a sequence.
 struct Outcome {
   std::unique_ptr<SplitFusion> fusion;
-  int lost = 0;                    ///< Surfaces lost, all frames together.
-  std::map<int, int> tracked;      ///< Frames, by surface.
-  std::map<int, double> fit;       ///< Median |depth difference|, metres.
+  int lost = 0;                ///< Surfaces lost, all frames together.
+  std::map<int, int> tracked;  ///< Frames, by surface.
+  std::map<int, double> fit;   ///< Median |depth difference|, metres.
 };
 
 /// Median distance of the rendered model to the live depth, by surface.
 std::map<int, double> FitToDepth(const SplitFusion& fusion,
                                  const cv::Mat_<float>& depth) {
-  const SceneRendering model = RenderScene(
-      fusion.surfaces(), fusion.camera(), fusion.options().ray_cast);
+  const SceneRendering model = RenderScene(fusion.surfaces(), fusion.camera(),
+                                           fusion.options().ray_cast);
   std::map<int, std::vector<float>> errors;
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 0; u < depth.cols; ++u) {
@@ -77,11 +78,11 @@ TEST(SharedData, WalkingXyzIsTracked) {
             static_cast<std::size_t>(kFrames));
   EXPECT_EQ(outcome.tracked.at(0), kFrames - 1);
   EXPECT_LE(outcome.lost, 1);
-  EXPECT_LT(CompareTrajectories(
-                outcome.fusion->trajectory(),
-                ReadTumTrajectory(sequence + "/gt/groundtruth.txt"))
-                .absolute.rmse,
-            0.010);
+  EXPECT_LT(
+      CompareTrajectories(outcome.fusion->trajectory(),
+                          ReadTumTrajectory(sequence + "/gt/groundtruth.txt"))
+          .absolute.rmse,
+      0.010);
   EXPECT_LT(outcome.fit.at(0), 0.015);
 }
 

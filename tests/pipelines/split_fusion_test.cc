@@ -150,7 +150,8 @@ TEST(SplitFusion, APersonWhoJumpsIsFoundWhereHisPixelsAre) {
   const FrameReport report =
       run.Next([](Frame* frame, std::vector<InstanceMask>* detections) {
         const auto moved = [](const cv::Mat& image, const cv::Mat& mask) {
-          const cv::Mat shift = (cv::Mat_<double>(2, 3) << 1, 0, kPixels, 0, 1, 0);
+          const cv::Mat shift =
+              (cv::Mat_<double>(2, 3) << 1, 0, kPixels, 0, 1, 0);
           cv::Mat result = cv::Mat::zeros(image.size(), image.type());
           image.copyTo(result, mask);
           cv::warpAffine(result, result, shift, image.size(),
@@ -168,8 +169,7 @@ TEST(SplitFusion, APersonWhoJumpsIsFoundWhereHisPixelsAre) {
           detection.mask = mask;
         }
       });
-  EXPECT_EQ(StateOf(report, person), "tracked")
-      << Find(report, person)->reason;
+  EXPECT_EQ(StateOf(report, person), "tracked") << Find(report, person)->reason;
   const Eigen::Vector3d way =
       MeanRigidMotion(run.fusion().surfaces().at(person)->graph())
           .translation() -

@@ -181,8 +181,7 @@ TEST(ModelRendering, PredictionHasTheBackgroundBehindTheSurfaces) {
   const MeshRendering rendering =
       RenderMeshes(surfaces, SmallCamera().Subsampled(2));
   const SurfacePrediction prediction = ToPrediction(
-      rendering,
-      RenderBackground(surfaces, SmallCamera(), 2, RayCastOptions()),
+      rendering, RenderBackground(surfaces, SmallCamera(), 2, RayCastOptions()),
       SmallCamera());
   EXPECT_EQ(prediction.labels(60, 80), 1);
   EXPECT_NEAR(prediction.depth(60, 80), 1.0, 0.005);

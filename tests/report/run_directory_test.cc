@@ -8,6 +8,7 @@
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/report/json_lines.h"
 #include "splitfusion/lib/report/library_versions.h"
+#include "support/expect_input_error.h"
 #include "support/sample_report.h"
 #include "support/temporary_folder.h"
 
@@ -63,8 +64,9 @@ TEST(RunDirectory, FinishWritesTheSummaryOfTheContract) {
   run.Finish();
   const auto json = nlohmann::json::parse(folder.Read("run/summary.json"));
   for (const char* key :
-       {"frames", "lost_frames", "seconds_per_frame", "seconds_writing",
-        "peak_memory_bytes", "surfaces", "versions", "preset"}) {
+       {"complete", "frames", "lost_frames", "seconds_per_frame",
+        "seconds_writing", "peak_memory_bytes", "surfaces", "versions",
+        "preset"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   for (const char* key : {"read", "segment", "split", "render", "associate",
@@ -103,12 +105,33 @@ TEST(RunDirectory, RefusesAFolderWithContent) {
 TEST(RunDirectory, OverwriteClearsTheOldRunAndNothingElse) {
   const TemporaryFolder folder;
   folder.Write("run/notes.txt", "mine");
+  folder.Write("run/options.flags", "");
   folder.Write("run/summary.json", "{}");
   folder.Write("run/surfaces/001_person/mesh.ply", "ply");
   const RunDirectory run(folder / "run", true, Facts());
   EXPECT_EQ(folder.Read("run/notes.txt"), "mine");
   EXPECT_FALSE(folder.Has("run/summary.json"));
   EXPECT_FALSE(folder.Has("run/surfaces"));
+}
+
+TEST(RunDirectory, OverwriteDeletesNothingThatNoRunWrote) {
+  const TemporaryFolder folder;
+  folder.Write("home/pictures/me.jpg", "precious");
+  ExpectInputError([&] { RunDirectory(folder / "home", true, Facts()); },
+                   "home/pictures: is not of a run");
+  EXPECT_TRUE(folder.Has("home/pictures/me.jpg"));
+}
+
+TEST(RunDirectory, TheSummarySaysWhetherTheRunIsComplete) {
+  const TemporaryFolder folder;
+  const RunPaths paths(folder / "run");
+  EXPECT_FALSE(IsComplete(paths));
+  const RunDirectory run(folder / "run", false, Facts());
+  EXPECT_FALSE(IsComplete(paths));
+  run.Finish(/*complete=*/false);
+  EXPECT_FALSE(IsComplete(paths));
+  run.Finish();
+  EXPECT_TRUE(IsComplete(paths));
 }
 
 TEST(RunDirectory, LogFilesDoNotCountAsContent) {

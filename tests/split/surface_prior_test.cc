@@ -126,9 +126,8 @@ TEST_F(GatherEvidenceTest, BackgroundAndOthersSpeakAgainst) {
 }
 
 TEST_F(GatherEvidenceTest, NothingSeenMakesAnEmptyCrop) {
-  const SurfaceEvidence evidence =
-      GatherEvidence({1, missed_, {}, {}, {}}, compared_, GraphCutOptions(),
-                     PriorOptions());
+  const SurfaceEvidence evidence = GatherEvidence(
+      {1, missed_, {}, {}, {}}, compared_, GraphCutOptions(), PriorOptions());
   EXPECT_EQ(evidence.crop.area(), 0);
 }
 

@@ -215,9 +215,8 @@ TEST_F(SurfaceSplitterTest, UsesThePredictionOfATracker) {
   first.Add(kCard, 2.0, 1);
   Split(first, {{first.Truth(1), "person", 0.9}});
   second.Add({110, 25, 40, 70}, 2.0, 1);  // Too far without prediction.
-  SurfacePrediction prediction{LabelImage(120, 160, std::uint16_t(0)),
-                               second.depth().clone(),
-                               {}};
+  SurfacePrediction prediction{
+      LabelImage(120, 160, std::uint16_t(0)), second.depth().clone(), {}};
   prediction.labels.setTo(1, second.Truth(1));
   const Frame frame = second.MakeFrame(1);
   last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),

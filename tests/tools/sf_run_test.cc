@@ -157,8 +157,43 @@ TEST_F(SfRun, ABrokenFrameEndsTheRunAndKeepsWhatWasComputed) {
   EXPECT_EQ(LineCount(folder_.Read("run/frames.jsonl")), 2);
   EXPECT_TRUE(folder_.Has("run/surfaces/000_background/mesh.ply"));
   EXPECT_TRUE(folder_.Has("run/surfaces/001_person/mesh.ply"));
-  EXPECT_EQ(nlohmann::json::parse(folder_.Read("run/summary.json"))["frames"],
-            2);
+  const auto summary = nlohmann::json::parse(folder_.Read("run/summary.json"));
+  EXPECT_EQ(summary["frames"], 2);
+  EXPECT_EQ(summary["complete"], false);
+}
+
+TEST_F(SfRun, AFlagfileWithAnUnknownFlagIsRefused) {
+  const std::string file =
+      folder_.Write("bad.flags", "# mine\n--threads=1\n--bogus=1\n");
+  ExpectRefused("sf_run", "--flagfile=" + file,
+                "bad.flags, line 3: unknown flag 'bogus'");
+}
+
+TEST_F(SfRun, MasksThatFitNoFrameAreRefused) {
+  Synthesize();
+  const fs::path masks = fs::path(folder_ / "sequence") / "masks_noisy";
+  fs::create_directories(folder_ / "other");
+  for (const auto& entry : fs::directory_iterator(masks)) {
+    if (entry.path().extension() != ".png") continue;
+    fs::copy(entry.path(), fs::path(folder_ / "other") /
+                               ("x" + entry.path().filename().string()));
+  }
+  const ProgramResult result = Run("run", "--masks=" + (folder_ / "other"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, HasSubstr("no mask for any of the"));
+}
+
+TEST_F(SfRun, WhatIsReadIsNotOverwritten) {
+  Synthesize();
+  fs::create_directories(folder_ / "run");
+  fs::copy(fs::path(folder_ / "sequence") / "masks_noisy",
+           folder_ / "run/masks", fs::copy_options::recursive);
+  folder_.Write("run/options.flags", "");
+  const ProgramResult result =
+      Run("run", "--overwrite --masks=" + (folder_ / "run/masks"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, HasSubstr("outside of --output"));
+  EXPECT_TRUE(folder_.Has("run/masks"));
 }
 
 TEST_F(SfRun, BadUsageEndsWithTwoAndOneLine) {

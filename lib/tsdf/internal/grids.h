@@ -41,6 +41,7 @@ struct VoxelUpdater {
   const DepthObservation& observation;
   float truncation;
   float max_weight;
+  float max_free_weight;
 
   /// Updates the voxel whose centre is at `p` in the camera frame.
   void Update(const Eigen::Vector3f& p, float* distance, float* weight,
