@@ -101,4 +101,12 @@ std::set<int> InstanceRegistry::Matchable() const {
   return ids;
 }
 
+std::set<int> InstanceRegistry::Followed() const {
+  std::set<int> ids;
+  for (const int id : Matchable()) {
+    if (!at(id).dormant) ids.insert(id);
+  }
+  return ids;
+}
+
 }  // namespace splitfusion

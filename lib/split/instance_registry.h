@@ -67,6 +67,9 @@ class InstanceRegistry {
   /// Ids that detections may be matched to: all but merged ones.
   std::set<int> Matchable() const;
 
+  /// Ids of the instances that should be in view: neither merged nor dormant.
+  std::set<int> Followed() const;
+
   /// The instance of an id that was born.
   const TrackedInstance& at(int id) const { return instances_.at(id); }
   /// Every instance ever born, by id.

@@ -77,6 +77,15 @@ SplitDecision MakeDecision(const std::string& action, const Segment& segment) {
           segment.iou};
 }
 
+cv::Mat_<uchar> MasksBut(int but, const std::vector<Segment>& segments,
+                         cv::Size size) {
+  cv::Mat_<uchar> masks(size, uchar(0));
+  for (int i = 0; i < static_cast<int>(segments.size()); ++i) {
+    if (i != but && !segments[i].mask.empty()) masks |= segments[i].mask;
+  }
+  return masks;
+}
+
 LabelImage ComposeSegments(const std::vector<Segment>& segments,
                            const LabelImage& predicted_labels,
                            const cv::Mat& depth) {

@@ -25,6 +25,11 @@ struct Segment {
 /// The decision `action` on a segment.
 SplitDecision MakeDecision(const std::string& action, const Segment& segment);
 
+/// Pixels in the mask of any segment but the one of index `but` (-1: of any at
+/// all), 255; of this size.
+cv::Mat_<uchar> MasksBut(int but, const std::vector<Segment>& segments,
+                         cv::Size size);
+
 /// Joins the cuts of all segments: HxW, 1 + index of the segment that a pixel
 /// belongs to, 0 = none. Where two claim a pixel the stronger evidence wins.
 /// Specks are dropped. Pixels without depth take the detector's mask (the

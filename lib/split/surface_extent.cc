@@ -51,4 +51,24 @@ cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
   return extent;
 }
 
+cv::Mat_<uchar> MissedExtent(int surface, const cv::Mat_<uchar>& others,
+                             const ComparedDepth& compared,
+                             const cv::Mat& depth) {
+  const cv::Mat_<uchar> open = UnexplainedPixels(surface, compared) & ~others;
+  return GrowOver(open,
+                  AgreeingPixels(surface, compared.labels, compared.agreement),
+                  depth);
+}
+
+cv::Mat_<uchar> Protrusions(const LabelImage& labels,
+                            const cv::Mat_<uchar>& missed,
+                            const ComparedDepth& compared,
+                            const cv::Mat& depth) {
+  const cv::Mat_<uchar> unexplained = UnexplainedPixels(0, compared);
+  const cv::Mat_<uchar> grown =
+      GrowOver(unexplained, labels > 0, depth) |
+      GrowOver(unexplained | UnmappedPixels(compared), missed, depth);
+  return grown & (labels == 0);
+}
+
 }  // namespace splitfusion

@@ -22,6 +22,22 @@ cv::Mat_<uchar> UnmappedPixels(const ComparedDepth& compared);
 cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
                          const cv::Mat_<uchar>& seeds, const cv::Mat& depth);
 
+/// Where a surface that no detection covers may have moved to: what hangs
+/// together with its agreeing pixels and only it can explain, outside of the
+/// masks of `others`. All HxW 8UC1, 255; `depth` as in GrowOver().
+cv::Mat_<uchar> MissedExtent(int surface, const cv::Mat_<uchar>& others,
+                             const ComparedDepth& compared,
+                             const cv::Mat& depth);
+
+/// What is one with a surface of `labels` and in front of the background,
+/// though the cut did not give it to the surface; of one in `missed` (255: a
+/// surface without detection) what is unmapped too. HxW 8UC1, 255; `depth` as
+/// in GrowOver().
+cv::Mat_<uchar> Protrusions(const LabelImage& labels,
+                            const cv::Mat_<uchar>& missed,
+                            const ComparedDepth& compared,
+                            const cv::Mat& depth);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_SPLIT_SURFACE_EXTENT_H_

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <set>
 
 namespace splitfusion {
 
@@ -19,6 +20,15 @@ struct SurfacePrediction {
   /// unknown. May be empty.
   cv::Mat_<float> background;
 };
+
+/// The prediction in which labels and live depth of the frame before, `last`,
+/// stand in for what it lacks: for everything if it is empty, else for the
+/// surfaces of `followed` that it has no pixel of, where it has nothing else.
+/// All zero, of this size, if both are empty.
+SurfacePrediction CompletePrediction(const SurfacePrediction& prediction,
+                                     const SurfacePrediction& last,
+                                     const std::set<int>& followed,
+                                     cv::Size size);
 
 }  // namespace splitfusion
 

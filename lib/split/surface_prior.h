@@ -52,7 +52,7 @@ struct SurfaceObservation {
   cv::Mat_<uchar> others;
   /// 0..1: how often recent detections covered the pixel; see MaskSupport.
   cv::Mat_<float> support;
-  /// 255 where a missed surface may have moved to; see GrowOverUnexplained.
+  /// 255 where a missed surface may have moved to; see MissedExtent.
   cv::Mat_<uchar> extent;
 };
 

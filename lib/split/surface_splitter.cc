@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -58,7 +57,9 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                                    const SurfacePrediction& prediction) {
   CheckSizes(frame, detections, prediction);
   ++frames_;
-  Work work{frame, points, ComposePrior(prediction), {}, {}, {}, {}, {}};
+  Work work{frame, points, {}, {}, {}, {}, {}, {}};
+  work.prior = CompletePrediction(prediction, last_, registry_.Followed(),
+                                  {camera_.width, camera_.height});
   work.compared = CompareDepth(frame.depth, work.prior, options_.prior);
   CollectSegments(detections, &work);
   AddMissedSurfaces(&work);
@@ -89,26 +90,6 @@ void SurfaceSplitter::CheckSizes(const Frame& frame,
   CheckSize("predicted background", prediction.background, camera_);
 }
 
-SurfacePrediction SurfaceSplitter::ComposePrior(
-    const SurfacePrediction& prediction) const {
-  const cv::Size size(camera_.width, camera_.height);
-  if (prediction.labels.empty()) {
-    if (!last_.labels.empty()) return last_;
-    return {LabelImage(size, 0), cv::Mat_<float>(size, 0.0f), {}};
-  }
-  SurfacePrediction prior{prediction.labels.clone(), prediction.depth.clone(),
-                          prediction.background};
-  if (last_.labels.empty()) return prior;
-  for (const int id : registry_.Matchable()) {
-    if (registry_.at(id).dormant) continue;
-    if (cv::countNonZero(prediction.labels == id) > 0) continue;
-    const cv::Mat gap = (last_.labels == id) & (prediction.labels == 0);
-    last_.labels.copyTo(prior.labels, gap);
-    last_.depth.copyTo(prior.depth, gap);
-  }
-  return prior;
-}
-
 void SurfaceSplitter::CollectSegments(
     const std::vector<InstanceMask>& detections, Work* work) const {
   const std::vector<Candidate> candidates =
@@ -126,10 +107,7 @@ void SurfaceSplitter::CollectSegments(
 }
 
 void SurfaceSplitter::AddMissedSurfaces(Work* work) const {
-  std::set<int> missed;
-  for (const int id : registry_.Matchable()) {
-    if (!registry_.at(id).dormant) missed.insert(id);
-  }
+  std::set<int> missed = registry_.Followed();
   for (const Segment& segment : work->segments) missed.erase(segment.surface);
   for (const int id : missed) {
     Segment segment;
@@ -143,10 +121,9 @@ void SurfaceSplitter::CutSegments(Work* work) const {
   std::vector<Segment>& segments = work->segments;
   tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
     Segment& segment = segments[i];
-    const SurfaceObservation observation =
-        Observe(segment, MasksOfOthers(i, *work), *work);
-    segment.evidence = GatherEvidence(observation, work->compared,
-                                      options_.graph_cut, options_.prior);
+    segment.evidence =
+        GatherEvidence(Observe(static_cast<int>(i), *work), work->compared,
+                       options_.graph_cut, options_.prior);
     if (segment.evidence.crop.area() == 0) return;
     segment.foreground =
         CutForeground(work->points, work->frame.color, segment.evidence.crop,
@@ -154,33 +131,19 @@ void SurfaceSplitter::CutSegments(Work* work) const {
   });
 }
 
-SurfaceObservation SurfaceSplitter::Observe(const Segment& segment,
-                                            const cv::Mat_<uchar>& others,
-                                            const Work& work) const {
-  const LabelImage& labels = work.prior.labels;
-  SurfaceObservation observation{segment.surface,
-                                 segment.mask,
-                                 others,
-                                 support_.Predict(segment.surface, labels),
-                                 {}};
+SurfaceObservation SurfaceSplitter::Observe(int index, const Work& work) const {
+  const Segment& segment = work.segments[index];
+  SurfaceObservation observation{
+      segment.surface,
+      segment.mask,
+      MasksBut(index, work.segments, work.frame.depth.size()),
+      support_.Predict(segment.surface, work.prior.labels),
+      {}};
   if (segment.mask.empty()) {
-    const cv::Mat_<uchar> open =
-        UnexplainedPixels(segment.surface, work.compared) & ~others;
-    observation.extent = GrowOver(
-        open, AgreeingPixels(segment.surface, labels, work.compared.agreement),
-        work.frame.depth);
+    observation.extent = MissedExtent(segment.surface, observation.others,
+                                      work.compared, work.frame.depth);
   }
   return observation;
-}
-
-cv::Mat_<uchar> SurfaceSplitter::MasksOfOthers(std::size_t index,
-                                               const Work& work) const {
-  cv::Mat_<uchar> others(work.frame.depth.size(), uchar(0));
-  for (std::size_t i = 0; i < work.segments.size(); ++i) {
-    const cv::Mat_<uchar>& mask = work.segments[i].mask;
-    if (i != index && !mask.empty()) others |= mask;
-  }
-  return others;
 }
 
 void SurfaceSplitter::SettleSurfaces(Work* work) {
@@ -337,28 +300,20 @@ void SurfaceSplitter::DrawLabels(Work* work) const {
                  [&](std::uint16_t segment) { return id_of[segment]; });
 }
 
-cv::Mat_<uchar> SurfaceSplitter::Protrusions(const Work& work) const {
-  const LabelImage& labels = work.result.labels;
-  cv::Mat_<uchar> missed(labels.size(), uchar(0));
-  for (const Segment& segment : work.segments) {
-    if (segment.mask.empty()) missed |= labels == segment.surface;
-  }
-  const cv::Mat_<uchar> unexplained = UnexplainedPixels(0, work.compared);
-  const cv::Mat_<uchar> unmapped = UnmappedPixels(work.compared);
-  const cv::Mat_<uchar> grown =
-      GrowOver(unexplained, labels > 0, work.frame.depth) |
-      GrowOver(unexplained | unmapped, missed, work.frame.depth);
-  return grown & (labels == 0);
-}
-
 void SurfaceSplitter::DrawUncertain(Work* work) const {
-  UncertainInput input{work->result.labels,
+  const LabelImage& labels = work->result.labels;
+  UncertainInput input{labels,
                        work->unconfirmed,
-                       MasksOfOthers(work->segments.size(), *work),
+                       MasksBut(-1, work->segments, labels.size()),
                        work->prior.labels.clone(),
                        work->compared.agreement,
                        work->frame.depth};
-  input.unconfirmed |= Protrusions(*work);
+  cv::Mat_<uchar> missed(labels.size(), uchar(0));
+  for (const Segment& segment : work->segments) {
+    if (segment.mask.empty()) missed |= labels == segment.surface;
+  }
+  input.unconfirmed |=
+      Protrusions(labels, missed, work->compared, work->frame.depth);
   for (const auto& [id, instance] : registry_.instances()) {
     if (!instance.dormant) continue;
     input.predicted_labels.setTo(0, work->prior.labels == id);

@@ -59,15 +59,11 @@ class SurfaceSplitter {
   void CheckSizes(const Frame& frame,
                   const std::vector<InstanceMask>& detections,
                   const SurfacePrediction& prediction) const;
-  SurfacePrediction ComposePrior(const SurfacePrediction& prediction) const;
   void CollectSegments(const std::vector<InstanceMask>& detections,
                        Work* work) const;
   void AddMissedSurfaces(Work* work) const;
   void CutSegments(Work* work) const;
-  SurfaceObservation Observe(const Segment& segment,
-                             const cv::Mat_<uchar>& others,
-                             const Work& work) const;
-  cv::Mat_<uchar> MasksOfOthers(std::size_t index, const Work& work) const;
+  SurfaceObservation Observe(int index, const Work& work) const;
   void SettleSurfaces(Work* work);
   void SettleMissed(const Segment& segment, int pixels, Work* work);
   void SettleNewcomer(int index, Work* work);
@@ -81,9 +77,6 @@ class SurfaceSplitter {
   void MergeCoveredSurfaces(Work* work);
   bool IsCovered(const Segment& part, int body_index, const Work& work) const;
   void DrawLabels(Work* work) const;
-  /// What is one with a surface and in front of the background, though the cut
-  /// did not give it to the surface; of a missed one what is unmapped too.
-  cv::Mat_<uchar> Protrusions(const Work& work) const;
   void DrawUncertain(Work* work) const;
   void Remember(const Work& work);
 

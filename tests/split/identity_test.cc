@@ -99,6 +99,9 @@ TEST(InstanceRegistry, NeverUsesAnIdTwice) {
   registry.Merge(2, 1);
   EXPECT_EQ(registry.Matchable(), std::set<int>{1});
   EXPECT_EQ(registry.Create(5, "dog", SurfaceKind::kNonRigid), 3);
+  registry.SetDormant(1);
+  EXPECT_EQ(registry.Matchable(), (std::set<int>{1, 3}));
+  EXPECT_EQ(registry.Followed(), std::set<int>{3});
 }
 
 TEST(InstanceRegistry, RecognisesWhoComesBack) {

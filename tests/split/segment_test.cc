@@ -33,6 +33,17 @@ TEST(ComposeSegments, TheStrongerClaimWins) {
   EXPECT_EQ(labels(80, 20), 0);
 }
 
+TEST(MasksBut, JoinsAllMasksButOne) {
+  Segment missed = Claim(3, {80, 80, 10, 10}, 0.2f);
+  missed.mask.release();
+  const std::vector<Segment> segments = {Claim(1, {10, 10, 20, 20}, 0.2f),
+                                         missed,
+                                         Claim(2, {50, 10, 20, 20}, 0.2f)};
+  EXPECT_EQ(cv::countNonZero(MasksBut(-1, segments, {160, 120})), 800);
+  const cv::Mat_<uchar> others = MasksBut(0, segments, {160, 120});
+  EXPECT_EQ(cv::norm(others, segments[2].mask, cv::NORM_INF), 0);
+}
+
 TEST(ComposeSegments, DropsSpecks) {
   Segment segment = Claim(1, {10, 10, 60, 40}, 0.2f);
   segment.foreground.colRange(40, 55) = 0;

@@ -45,5 +45,50 @@ TEST(GrowOver, NeedsASeedAndOpenPixels) {
       0);
 }
 
+/// Card 1 where it was predicted, with an arm in front of the background and
+/// another one where nothing is mapped.
+class RaisedArms : public testing::Test {
+ protected:
+  RaisedArms() {
+    scene_.Add(body_, 2.0, 1).Add(mapped_arm_, 2.0, 1).Add(open_arm_, 2.0, 1);
+    compared_.labels(body_) = 1;
+    compared_.agreement(body_) = uchar(Agreement::kSame);
+    compared_.background(mapped_arm_) = uchar(Agreement::kNearer);
+  }
+  static double Difference(const cv::Mat& a, const cv::Mat& b) {
+    return cv::norm(a, b, cv::NORM_INF);
+  }
+
+  const cv::Rect body_{50, 40, 40, 60};
+  const cv::Rect mapped_arm_{90, 50, 30, 10};
+  const cv::Rect open_arm_{20, 50, 30, 10};
+  LayeredScene scene_;
+  ComparedDepth compared_ = Nothing();
+};
+
+TEST_F(RaisedArms, BelongToAMissedSurfaceUnlessSomebodyElseHasThem) {
+  const cv::Mat_<uchar> nobody(120, 160, uchar(0));
+  EXPECT_EQ(Difference(MissedExtent(1, nobody, compared_, scene_.depth()),
+                       RectMask(body_) | RectMask(mapped_arm_)),
+            0);
+  EXPECT_EQ(Difference(MissedExtent(1, RectMask(mapped_arm_), compared_,
+                                    scene_.depth()),
+                       RectMask(body_)),
+            0);
+}
+
+TEST_F(RaisedArms, StandOutOfADetectedSurfaceBeforeTheBackgroundOnly) {
+  LabelImage labels(120, 160, std::uint16_t(0));
+  labels(body_) = 1;
+  const cv::Mat_<uchar> none(120, 160, uchar(0));
+  EXPECT_EQ(Difference(Protrusions(labels, none, compared_, scene_.depth()),
+                       RectMask(mapped_arm_)),
+            0);
+  EXPECT_EQ(Difference(
+                Protrusions(labels, RectMask(body_), compared_, scene_.depth()),
+                RectMask(mapped_arm_) | RectMask(open_arm_)),
+            0);
+}
+
 }  // namespace
 }  // namespace splitfusion
