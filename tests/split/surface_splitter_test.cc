@@ -13,15 +13,37 @@
 namespace splitfusion {
 namespace {
 
+const cv::Rect kCard(50, 25, 40, 70);
+const cv::Rect kArm(90, 50, 45, 10);  // Touches the card.
+
 /// Splits scenes frame by frame, without predictions of a tracker.
 class SurfaceSplitterTest : public testing::Test {
  protected:
   SplitResult Split(LayeredScene& scene,
-                    const std::vector<InstanceMask>& detections) {
+                    const std::vector<InstanceMask>& detections,
+                    const SurfacePrediction& prediction = {}) {
     const Frame frame = scene.MakeFrame(next_frame_++);
     last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),
-                            detections, {});
+                            detections, prediction);
     return last_;
+  }
+  /// Splits a frame with the card alone, then one in which it raises an arm,
+  /// far outside of it and of every band around it, while a tracker predicts
+  /// the card as it was before a known wall. Without a detection if `missed`,
+  /// else with one that cuts the arm off. Returns the pixels of card and arm.
+  cv::Mat_<uchar> RaiseArm(bool missed) {
+    LayeredScene first, second;
+    first.Add(kCard, 2.0, 1);
+    second.Add(kCard, 2.0, 1).Add(kArm, 2.0, 1);
+    const InstanceMask card{first.Truth(1), "person", 0.9};
+    Split(first, {card});
+    SurfacePrediction prediction{LabelImage(120, 160, std::uint16_t(0)),
+                                 first.depth().clone(),
+                                 cv::Mat_<float>(120, 160, 3.0f)};
+    prediction.labels.setTo(1, first.Truth(1));
+    Split(second, missed ? std::vector<InstanceMask>{} : std::vector{card},
+          prediction);
+    return second.Truth(1);
   }
   /// Number of decisions of this kind in the last frame.
   int Count(const std::string& action) const {
@@ -42,8 +64,6 @@ class SurfaceSplitterTest : public testing::Test {
   SplitResult last_;
   int next_frame_ = 0;
 };
-
-const cv::Rect kCard(50, 25, 40, 70);
 
 TEST_F(SurfaceSplitterTest, AConfidentDetectionIsBornInTheFirstFrame) {
   LayeredScene scene;
@@ -218,44 +238,19 @@ TEST_F(SurfaceSplitterTest, UsesThePredictionOfATracker) {
   SurfacePrediction prediction{
       LabelImage(120, 160, std::uint16_t(0)), second.depth().clone(), {}};
   prediction.labels.setTo(1, second.Truth(1));
-  const Frame frame = second.MakeFrame(1);
-  last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),
-                          {}, prediction);
+  Split(second, {}, prediction);
   EXPECT_GT(IouOf(1, second.Truth(1)), 0.97);
 }
 
 TEST_F(SurfaceSplitterTest, AMissedSurfaceKeepsTheArmThatItRaises) {
-  LayeredScene first, second;
-  first.Add(kCard, 2.0, 1);
-  Split(first, {{first.Truth(1), "person", 0.9}});
-  // Joined to the card, far outside of it and of every band around it.
-  second.Add(kCard, 2.0, 1).Add({kCard.br().x, 50, 45, 10}, 2.0, 1);
-  SurfacePrediction prediction{LabelImage(120, 160, std::uint16_t(0)),
-                               first.depth().clone(),
-                               cv::Mat_<float>(120, 160, 3.0f)};
-  prediction.labels.setTo(1, first.Truth(1));
-  const Frame frame = second.MakeFrame(1);
-  last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),
-                          {}, prediction);
-  EXPECT_GT(IouOf(1, second.Truth(1)), 0.95);
+  const cv::Mat_<uchar> truth = RaiseArm(/*missed=*/true);
+  EXPECT_GT(IouOf(1, truth), 0.95);
 }
 
 TEST_F(SurfaceSplitterTest, WhatStandsOutOfASurfaceIsNotBackground) {
-  LayeredScene first, second;
-  first.Add(kCard, 2.0, 1);
-  Split(first, {{first.Truth(1), "person", 0.9}});
-  const cv::Rect arm(kCard.br().x, 50, 45, 10);
-  second.Add(kCard, 2.0, 1).Add(arm, 2.0, 1);
-  SurfacePrediction prediction{LabelImage(120, 160, std::uint16_t(0)),
-                               first.depth().clone(),
-                               cv::Mat_<float>(120, 160, 3.0f)};
-  prediction.labels.setTo(1, first.Truth(1));
-  const Frame frame = second.MakeFrame(1);
-  // The detector cuts the arm off.
-  last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),
-                          {{first.Truth(1), "person", 0.9}}, prediction);
+  RaiseArm(/*missed=*/false);
   const cv::Mat known = (last_.labels > 0) | last_.uncertain;
-  EXPECT_EQ(cv::countNonZero(known(arm)), arm.area());
+  EXPECT_EQ(cv::countNonZero(known(kArm)), kArm.area());
 }
 
 TEST_F(SurfaceSplitterTest, TheSameInputGivesTheSameResult) {
