@@ -14,8 +14,7 @@ using Factory = std::function<std::unique_ptr<NetworkDecoder>()>;
 
 const std::map<std::string, Factory>& Decoders() {
   static const std::map<std::string, Factory> decoders = {
-      {"yolact", [] { return std::make_unique<YolactDecoder>(); }},
-      {"yolov8seg", [] { return std::make_unique<Yolov8SegDecoder>(); }}};
+      {"yolact", MakeYolactDecoder}, {"yolov8seg", MakeYolov8SegDecoder}};
   return decoders;
 }
 

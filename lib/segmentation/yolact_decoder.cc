@@ -188,36 +188,44 @@ std::vector<NetworkInstance> DecodeYolact(const YolactOutputs& outputs,
   return instances;
 }
 
-std::vector<std::string> YolactDecoder::OutputNames() const {
-  return {"loc", "conf", "mask", "proto"};
-}
+namespace {
 
-void YolactDecoder::CheckInputSize(cv::Size input) const {
-  CheckOption(input.width == input.height && input.width >= 32, "input size",
-              ToString(input), "a square for yolact, such as 550x550");
-}
+class YolactDecoder : public NetworkDecoder {
+ public:
+  std::vector<std::string> OutputNames() const override {
+    return {"loc", "conf", "mask", "proto"};
+  }
+  cv::Size DefaultInputSize() const override { return {550, 550}; }
+  void CheckInputSize(cv::Size input) const override {
+    CheckOption(input.width == input.height && input.width >= 32, "input size",
+                ToString(input), "a square for yolact, such as 550x550");
+  }
+  InputPlacement Place(cv::Size frame, cv::Size input) const override {
+    return Stretch(frame, input);
+  }
+  cv::Mat MakeInput(const cv::Mat& color,
+                    const InputPlacement& placement) const override {
+    cv::Mat image;
+    color.convertTo(image, CV_32F);
+    image = PlaceFrame(image, placement, cv::Scalar());
+    cv::subtract(image, kMean, image);
+    cv::divide(image, kDeviation, image);
+    return cv::dnn::blobFromImage(image, 1.0, cv::Size(), cv::Scalar(),
+                                  /*swapRB=*/true);
+  }
+  std::vector<NetworkInstance> Decode(
+      const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
+      const DecoderOptions& options) const override {
+    return DecodeYolact(
+        {outputs.at(0), outputs.at(1), outputs.at(2), outputs.at(3)}, input,
+        options);
+  }
+};
 
-InputPlacement YolactDecoder::Place(cv::Size frame, cv::Size input) const {
-  return Stretch(frame, input);
-}
+}  // namespace
 
-cv::Mat YolactDecoder::MakeInput(const cv::Mat& color,
-                                 const InputPlacement& placement) const {
-  cv::Mat image;
-  color.convertTo(image, CV_32F);
-  image = PlaceFrame(image, placement, cv::Scalar());
-  cv::subtract(image, kMean, image);
-  cv::divide(image, kDeviation, image);
-  return cv::dnn::blobFromImage(image, 1.0, cv::Size(), cv::Scalar(),
-                                /*swapRB=*/true);
-}
-
-std::vector<NetworkInstance> YolactDecoder::Decode(
-    const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
-    const DecoderOptions& options) const {
-  return DecodeYolact(
-      {outputs.at(0), outputs.at(1), outputs.at(2), outputs.at(3)}, input,
-      options);
+std::unique_ptr<NetworkDecoder> MakeYolactDecoder() {
+  return std::make_unique<YolactDecoder>();
 }
 
 }  // namespace splitfusion

@@ -1,7 +1,7 @@
 #ifndef SPLITFUSION_LIB_SEGMENTATION_YOLACT_DECODER_H_
 #define SPLITFUSION_LIB_SEGMENTATION_YOLACT_DECODER_H_
 
-#include <string>
+#include <memory>
 #include <vector>
 
 #include "splitfusion/lib/segmentation/network_decoder.h"
@@ -34,20 +34,9 @@ std::vector<int> FastNms(const std::vector<cv::Rect2f>& boxes,
                          double threshold);
 
 /// YOLACT (the paper's network): the frame stretched to a square of 550
-/// pixels, colours normalised, RGB.
-class YolactDecoder : public NetworkDecoder {
- public:
-  std::vector<std::string> OutputNames() const override;
-  cv::Size DefaultInputSize() const override { return {550, 550}; }
-  /// Width and height must be equal.
-  void CheckInputSize(cv::Size input) const override;
-  InputPlacement Place(cv::Size frame, cv::Size input) const override;
-  cv::Mat MakeInput(const cv::Mat& color,
-                    const InputPlacement& placement) const override;
-  std::vector<NetworkInstance> Decode(
-      const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
-      const DecoderOptions& options) const override;
-};
+/// pixels, colours normalised, RGB. Width and height of the input must be
+/// equal.
+std::unique_ptr<NetworkDecoder> MakeYolactDecoder();
 
 }  // namespace splitfusion
 

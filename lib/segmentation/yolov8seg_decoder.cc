@@ -124,30 +124,38 @@ std::vector<NetworkInstance> DecodeYolov8Seg(const Yolov8SegOutputs& outputs,
   return instances;
 }
 
-std::vector<std::string> Yolov8SegDecoder::OutputNames() const {
-  return {"output0", "output1"};
-}
+namespace {
 
-void Yolov8SegDecoder::CheckInputSize(cv::Size input) const {
-  CheckOption(input.width % 32 == 0 && input.height % 32 == 0, "input size",
-              ToString(input), "multiples of 32 for yolov8seg");
-}
+class Yolov8SegDecoder : public NetworkDecoder {
+ public:
+  std::vector<std::string> OutputNames() const override {
+    return {"output0", "output1"};
+  }
+  cv::Size DefaultInputSize() const override { return {640, 640}; }
+  void CheckInputSize(cv::Size input) const override {
+    CheckOption(input.width % 32 == 0 && input.height % 32 == 0, "input size",
+                ToString(input), "multiples of 32 for yolov8seg");
+  }
+  InputPlacement Place(cv::Size frame, cv::Size input) const override {
+    return Letterbox(frame, input);
+  }
+  cv::Mat MakeInput(const cv::Mat& color,
+                    const InputPlacement& placement) const override {
+    return cv::dnn::blobFromImage(
+        PlaceFrame(color, placement, cv::Scalar::all(114)), 1.0 / 255,
+        cv::Size(), cv::Scalar(), /*swapRB=*/true);
+  }
+  std::vector<NetworkInstance> Decode(
+      const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
+      const DecoderOptions& options) const override {
+    return DecodeYolov8Seg({outputs.at(0), outputs.at(1)}, input, options);
+  }
+};
 
-InputPlacement Yolov8SegDecoder::Place(cv::Size frame, cv::Size input) const {
-  return Letterbox(frame, input);
-}
+}  // namespace
 
-cv::Mat Yolov8SegDecoder::MakeInput(const cv::Mat& color,
-                                    const InputPlacement& placement) const {
-  return cv::dnn::blobFromImage(
-      PlaceFrame(color, placement, cv::Scalar::all(114)), 1.0 / 255, cv::Size(),
-      cv::Scalar(), /*swapRB=*/true);
-}
-
-std::vector<NetworkInstance> Yolov8SegDecoder::Decode(
-    const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
-    const DecoderOptions& options) const {
-  return DecodeYolov8Seg({outputs.at(0), outputs.at(1)}, input, options);
+std::unique_ptr<NetworkDecoder> MakeYolov8SegDecoder() {
+  return std::make_unique<Yolov8SegDecoder>();
 }
 
 }  // namespace splitfusion

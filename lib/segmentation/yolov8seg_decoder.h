@@ -1,7 +1,7 @@
 #ifndef SPLITFUSION_LIB_SEGMENTATION_YOLOV8SEG_DECODER_H_
 #define SPLITFUSION_LIB_SEGMENTATION_YOLOV8SEG_DECODER_H_
 
-#include <string>
+#include <memory>
 #include <vector>
 
 #include "splitfusion/lib/segmentation/network_decoder.h"
@@ -28,20 +28,8 @@ std::vector<NetworkInstance> DecodeYolov8Seg(const Yolov8SegOutputs& outputs,
                                              const DecoderOptions& options);
 
 /// YOLOv8-seg (and YOLO11-seg, whose outputs are the same): letterbox with
-/// grey 114, RGB / 255.
-class Yolov8SegDecoder : public NetworkDecoder {
- public:
-  std::vector<std::string> OutputNames() const override;
-  cv::Size DefaultInputSize() const override { return {640, 640}; }
-  /// Width and height must be multiples of 32.
-  void CheckInputSize(cv::Size input) const override;
-  InputPlacement Place(cv::Size frame, cv::Size input) const override;
-  cv::Mat MakeInput(const cv::Mat& color,
-                    const InputPlacement& placement) const override;
-  std::vector<NetworkInstance> Decode(
-      const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
-      const DecoderOptions& options) const override;
-};
+/// grey 114, RGB / 255. Width and height of the input must be multiples of 32.
+std::unique_ptr<NetworkDecoder> MakeYolov8SegDecoder();
 
 }  // namespace splitfusion
 

@@ -165,10 +165,10 @@ TEST_F(DecodeYolactTest, NamesOutputsOfAnotherShape) {
 }
 
 TEST(YolactDecoder, InputIsNormalisedRgb) {
-  const YolactDecoder decoder;
+  const auto decoder = MakeYolactDecoder();
   const cv::Mat color(48, 64, CV_8UC3, cv::Scalar(0, 116, 255));
   const cv::Mat input =
-      decoder.MakeInput(color, decoder.Place(color.size(), {550, 550}));
+      decoder->MakeInput(color, decoder->Place(color.size(), {550, 550}));
   ASSERT_EQ(ShapeText(ShapeOf(input, 4)), "1x3x550x550");
   const auto at = [&](int channel) {
     const int index[] = {0, channel, 300, 17};
@@ -179,7 +179,7 @@ TEST(YolactDecoder, InputIsNormalisedRgb) {
   EXPECT_NEAR(at(2), (0 - 103.94) / 57.38, 1e-5);
   ExpectInputError(
       [&] {
-        decoder.CheckInputSize({550, 480});
+        decoder->CheckInputSize({550, 480});
       },
       "input size = 550x480: expected a square");
 }

@@ -137,10 +137,10 @@ TEST(DecodeYolov8Seg, NamesOutputsOfAnotherShape) {
 }
 
 TEST(Yolov8SegDecoder, InputIsRgbOfUnitRangeOnGrey) {
-  const Yolov8SegDecoder decoder;
+  const auto decoder = MakeYolov8SegDecoder();
   const cv::Mat color(32, 32, CV_8UC3, cv::Scalar(51, 102, 255));
   const cv::Mat input =
-      decoder.MakeInput(color, decoder.Place({32, 32}, {64, 32}));
+      decoder->MakeInput(color, decoder->Place({32, 32}, {64, 32}));
   ASSERT_EQ(ShapeText(ShapeOf(input, 4)), "1x3x32x64");
   const auto at = [&](int channel, int column) {
     const int index[] = {0, channel, 7, column};
@@ -152,7 +152,7 @@ TEST(Yolov8SegDecoder, InputIsRgbOfUnitRangeOnGrey) {
   EXPECT_FLOAT_EQ(at(0, 3), 114 / 255.0f);
   ExpectInputError(
       [&] {
-        decoder.CheckInputSize({640, 470});
+        decoder->CheckInputSize({640, 470});
       },
       "input size = 640x470: expected multiples of 32");
 }
