@@ -96,7 +96,7 @@ std::vector<BatchRun> OptionColumns(const BatchOptions& options) {
 }  // namespace
 
 void BatchOptions::Check() const {
-  CheckOption(jobs >= 1, "jobs", jobs, "at least 1");
+  CheckOption(jobs >= 1 && jobs <= 1024, "jobs", jobs, "1..1024");
   CheckOption(!output.empty(), "output", "''", "a folder");
   CheckOption(!sequences.empty(), "sequences", "''", "at least one folder");
   CheckFile(run_program, "the program sf_run");

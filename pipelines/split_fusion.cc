@@ -52,9 +52,10 @@ void PipelineOptions::Check() const {
               render_stride, "1..8 pixels");
   for (const auto* stages : {&tracker.rigid, &tracker.non_rigid}) {
     for (const TrackingStage& stage : *stages) {
-      CheckOption(stage.stride % render_stride == 0, "stride", stage.stride,
-                  "a multiple of render_stride (" +
-                      std::to_string(render_stride) + ")");
+      CheckOption(stage.stride % render_stride == 0, "render_stride",
+                  render_stride,
+                  "a divisor of the stride of every tracking stage (" +
+                      std::to_string(stage.stride) + ")");
     }
   }
   CheckOption(min_birth_area >= 0 && min_birth_area < 1, "min_birth_area",

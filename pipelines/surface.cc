@@ -84,7 +84,8 @@ void Surface::PlaceGraph(const LiveView& live) {
   if (kind_ == SurfaceKind::kRigid) {
     graph_ = MakeRigidGraph(Rigid3d::Identity());
   } else {
-    graph_.node_spacing = NodeSpacing(options_.graph, MedianDepth(live, id_));
+    planned_node_spacing_ = NodeSpacing(options_.graph, MedianDepth(live, id_));
+    graph_.node_spacing = planned_node_spacing_;
     GrowGraph(mesh_, options_.graph, &graph_, nullptr);
   }
   RefreshSkinning();

@@ -91,6 +91,9 @@ class Surface {
   const SurfaceOptions& options() const { return options_; }
   /// Deformation graph at the current motions.
   const DeformationGraph& graph() const { return graph_; }
+  /// Node spacing that the options ask for, metres; 0 for a rigid surface. The
+  /// graph's own is wider where GraphOptions::max_nodes would be exceeded.
+  double planned_node_spacing() const { return planned_node_spacing_; }
   /// The graph, for prediction and tracking.
   DeformationGraph* mutable_graph() { return &graph_; }
   /// Skinning by the current graph.
@@ -118,6 +121,7 @@ class Surface {
   TsdfVolume volume_;
   WarpedIntegrator integrator_;
   DeformationGraph graph_;
+  double planned_node_spacing_ = 0;
   std::unique_ptr<SkinningIndex> index_;
   TriangleMesh mesh_;
   std::vector<Skinning> mesh_skinning_;

@@ -18,11 +18,15 @@ presets=(kinectfusion dynamicfusion cofusion background_only splitfusion)
 
 refuse() { echo "compare_presets.sh: $1" >&2; exit 2; }
 
+# The comment at the top of this file.
+print_help() { sed -n '2,/^[^#]/{s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; }
+
 sequences=()
 flags=()
 output=
 for argument in "$@"; do
   case "$argument" in
+    -h | --help) print_help; exit 0 ;;
     --output=*) output="${argument#*=}" ;;
     -*) flags+=("$argument") ;;
     *) sequences+=("$argument") ;;

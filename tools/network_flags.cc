@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "flag_names.h"
 #include "splitfusion/lib/base/error.h"
 
 DEFINE_string(model, "", "Network that makes the masks, an ONNX file.");
@@ -18,26 +19,22 @@ DEFINE_int32(top_k, 100, "Instances in a frame at most.");
 namespace splitfusion {
 namespace {
 
+constexpr int kMaxSide = 4096;  // Pixels.
+
 cv::Size ParseSize(const std::string& text) {
   if (text.empty()) return {};
   std::stringstream stream(text);
   cv::Size size;
   char by = 0;
   const bool ok = (stream >> size.width >> by >> size.height) && by == 'x' &&
-                  stream.peek() == EOF && size.width > 0 && size.height > 0;
-  CheckOption(ok, "--network_size", text, "WxH, such as 640x480");
+                  stream.peek() == EOF && size.width > 0 && size.height > 0 &&
+                  size.width <= kMaxSide && size.height <= kMaxSide;
+  CheckOption(ok, "network_size", text,
+              "WxH, such as 640x480, at most " + std::to_string(kMaxSide));
   return size;
 }
 
-}  // namespace
-
-bool HasNetworkFlags() {
-  CheckOption(!FLAGS_model.empty() || FLAGS_decoder.empty(), "--model", "''",
-              "an ONNX file to go with --decoder=" + FLAGS_decoder);
-  return !FLAGS_model.empty();
-}
-
-NetworkOptions NetworkOptionsFromFlags() {
+NetworkOptions OptionsFromFlags() {
   NetworkOptions options;
   options.model = FLAGS_model;
   options.decoder = FLAGS_decoder;
@@ -49,6 +46,22 @@ NetworkOptions NetworkOptionsFromFlags() {
   options.detections.nms_threshold = FLAGS_nms_threshold;
   options.detections.top_k = FLAGS_top_k;
   return options;
+}
+
+}  // namespace
+
+bool HasNetworkFlags() {
+  CheckOption(!FLAGS_model.empty() || FLAGS_decoder.empty(), "model", "''",
+              "an ONNX file to go with --decoder=" + FLAGS_decoder);
+  return !FLAGS_model.empty();
+}
+
+std::unique_ptr<NetworkSegmenter> NetworkFromFlags() {
+  std::unique_ptr<NetworkSegmenter> network;
+  NamingFlags({{"input size", "network_size"}}, [&] {
+    network = std::make_unique<NetworkSegmenter>(OptionsFromFlags());
+  });
+  return network;
 }
 
 }  // namespace splitfusion

@@ -7,14 +7,14 @@
 #include <sstream>
 #include <vector>
 
+#include "flag_names.h"
+#include "sequence_flags.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/pipelines/presets.h"
 
 DEFINE_string(preset, "splitfusion",
               "splitfusion, kinectfusion, dynamicfusion, cofusion or "
               "background_only.");
-DEFINE_int32(first_frame, 0, "Frames before it are skipped.");
-DEFINE_int32(max_frames, 0, "Frames read at most; 0 = all.");
 DEFINE_string(intrinsics, "",
               "fx,fy,cx,cy,width,height; replaces the calibration file.");
 DEFINE_double(depth_scale, 0, "Depth units a metre; 0 = calibration file.");
@@ -32,14 +32,20 @@ DEFINE_string(linear_solver, "auto",
 DEFINE_string(preconditioner, "jacobi", "Of cgnr: jacobi or identity.");
 DEFINE_string(trust_region, "levenberg_marquardt",
               "levenberg_marquardt or dogleg.");
-DEFINE_int32(solver_threads, 1, "Of Ceres; more change the last digits.");
-DEFINE_int32(solver_iterations, 2, "Per association.");
-DEFINE_int32(linear_iterations, 100, "Of cgnr, per step.");
-DEFINE_double(eta, 0.01, "Of cgnr: relative accuracy of a step.");
-DEFINE_double(function_tolerance, 1e-5, "Ceres' function_tolerance.");
-DEFINE_double(gradient_tolerance, 1e-10, "Ceres' gradient_tolerance.");
-DEFINE_double(parameter_tolerance, 1e-8, "Ceres' parameter_tolerance.");
-DEFINE_double(initial_radius, 1e4, "Of the trust region.");
+DEFINE_int32(solver_threads, 1,
+             "Threads of Ceres; more change the last digits.");
+DEFINE_int32(solver_iterations, 2, "Solver iterations per association.");
+DEFINE_int32(linear_iterations, 100,
+             "Conjugate gradient iterations of a step at most (gn_pcg, cgnr).");
+DEFINE_double(eta, 0.01,
+              "Relative accuracy of a step's linear solve (gn_pcg, cgnr).");
+DEFINE_double(function_tolerance, 1e-5,
+              "Converged when the cost changes by less, relative.");
+DEFINE_double(gradient_tolerance, 1e-10,
+              "Converged when the gradient's largest entry is below.");
+DEFINE_double(parameter_tolerance, 1e-8,
+              "Converged when the step is below (radians, metres).");
+DEFINE_double(initial_radius, 1e4, "First radius of the trust region.");
 DEFINE_bool(full_report, false, "Write Ceres' FullReport() of every solve.");
 DEFINE_double(rigid_distance, 0.10, "First rigid gate, metres (ends at half).");
 DEFINE_double(rigid_angle, 30, "First rigid gate, degrees (ends at 2/3).");
@@ -48,19 +54,24 @@ DEFINE_double(non_rigid_distance, 0.10,
 DEFINE_double(non_rigid_angle, 45, "Non-rigid gate, degrees.");
 DEFINE_int32(neighbors_per_point, 6, "K, nodes that carry a point (Eq. 3).");
 DEFINE_int32(neighbors_per_node, 8, "Edges of a node.");
-DEFINE_double(near_spacing, 0.025, "Node spacing near the camera, metres.");
-DEFINE_double(far_spacing, 0.040, "Node spacing from 2 m on, metres.");
-DEFINE_int32(max_nodes, 2000, "Per surface.");
-DEFINE_double(background_voxel, 0.010, "Metres.");
-DEFINE_double(object_voxel, 0.005, "Metres.");
-DEFINE_double(background_truncation, 0.04, "Metres.");
-DEFINE_double(object_truncation, 0.03, "Metres.");
-DEFINE_double(max_weight, 64, "Cap of the running mean.");
+DEFINE_double(near_spacing, 0.025, "Node spacing up to 0.7 m, metres.");
+DEFINE_double(far_spacing, 0.040, "Node spacing from 1.5 m on, metres.");
+DEFINE_int32(max_nodes, 2000, "Of a graph; its spacing grows to keep it.");
+DEFINE_double(background_voxel, 0.010, "Voxel size of the background, metres.");
+DEFINE_double(object_voxel, 0.005, "Voxel size of other surfaces, metres.");
+DEFINE_double(background_truncation, 0.04,
+              "Truncation of the background's distances, metres.");
+DEFINE_double(object_truncation, 0.03,
+              "Truncation of the distances of other surfaces, metres.");
+DEFINE_double(max_weight, 64, "Cap of a voxel's weight in the running mean.");
 DEFINE_double(object_free_weight, 3,
-              "The same where an object was found gone.");
+              "Cap of a voxel's weight where an object was found gone.");
 DEFINE_double(background_min_piece, 0.01,
-              "Smaller pieces of the final mesh are left out, m^2.");
-DEFINE_double(object_min_piece, 0.0025, "Likewise.");
+              "Smaller pieces of the background's final mesh are left out, "
+              "m^2.");
+DEFINE_double(object_min_piece, 0.0025,
+              "Smaller pieces of other surfaces' final meshes are left out, "
+              "m^2.");
 DEFINE_int32(render_stride, 2, "Model maps hold every n-th pixel.");
 
 namespace splitfusion {
@@ -77,7 +88,11 @@ PinholeCamera ParseIntrinsics(const std::string& text) {
     throw InputError("--intrinsics=" + text +
                      ": expected fx,fy,cx,cy,width,height");
   }
-  camera.Check();
+  try {
+    camera.Check();
+  } catch (const InputError& error) {
+    throw InputError("--intrinsics=" + text + ": " + error.what());
+  }
   return camera;
 }
 
@@ -132,12 +147,37 @@ void SetModel(PipelineOptions* options) {
                           FLAGS_max_weight, FLAGS_object_free_weight};
 }
 
+/// Checks the parts of which several have a field of the same name, or one that
+/// is not named as its flag.
+void CheckParts(const PipelineOptions& options) {
+  for (const TrackingStage& stage : options.tracker.rigid) {
+    NamingFlags({{"gate distance", "rigid_distance"},
+                 {"gate normal_angle", "rigid_angle"}},
+                [&] { stage.gates.Check(); });
+  }
+  for (const TrackingStage& stage : options.tracker.non_rigid) {
+    NamingFlags({{"gate distance", "non_rigid_distance"},
+                 {"gate normal_angle", "non_rigid_angle"}},
+                [&] { stage.gates.Check(); });
+  }
+  NamingFlags({{"max_iterations", "solver_iterations"},
+               {"max_linear_solver_iterations", "linear_iterations"}},
+              [&] { options.solver.Check(); });
+  NamingFlags({{"voxel_size", "background_voxel"},
+               {"truncation", "background_truncation"},
+               {"min_piece_area", "background_min_piece"}},
+              [&] { options.background.Check(); });
+  NamingFlags({{"voxel_size", "object_voxel"},
+               {"truncation", "object_truncation"},
+               {"max_free_weight", "object_free_weight"},
+               {"min_piece_area", "object_min_piece"}},
+              [&] { options.object.Check(); });
+}
+
 }  // namespace
 
 TumReaderOptions ReaderOptionsFromFlags() {
-  TumReaderOptions options;
-  options.first_frame = FLAGS_first_frame;
-  options.max_frames = FLAGS_max_frames;
+  TumReaderOptions options = FramesFromFlags();
   options.depth_scale = FLAGS_depth_scale;
   options.depth_filter.min_depth = FLAGS_min_depth;
   options.depth_filter.max_depth = FLAGS_max_depth;
@@ -158,6 +198,7 @@ PipelineOptions PipelineOptionsFromFlags() {
   SetGates(&options.tracker);
   SetSolver(&options.solver);
   SetModel(&options);
+  CheckParts(options);
   options.Check();
   return options;
 }
@@ -174,7 +215,7 @@ std::string FlagfileText() {
     // --output=NEW repeats it.
     if (flag.name == "output" || flag.name == "overwrite") continue;
     const bool ours = file == "sf_run.cc" || file == "run_flags.cc" ||
-                      file == "network_flags.cc";
+                      file == "network_flags.cc" || file == "sequence_flags.cc";
     if (ours) text += "--" + flag.name + "=" + flag.current_value + "\n";
   }
   return text;

@@ -16,6 +16,7 @@
 #include "splitfusion/lib/evaluation/point_follower.h"
 #include "splitfusion/lib/evaluation/run_evaluation.h"
 #include "splitfusion/lib/evaluation/track_point.h"
+#include "splitfusion/lib/report/run_directory.h"
 #include "tool_main.h"
 
 DEFINE_string(run, "", "Directory of a run of sf_run.");
@@ -111,6 +112,10 @@ void FollowQueries(const RecordedRun& run,
 
 void EvaluateRunDirectory(const EvaluationOptions& options) {
   RecordedRun run = ReadRun(FLAGS_run);
+  if (!IsComplete(RunPaths(FLAGS_run))) {
+    std::cout << FLAGS_run << ": unfinished run (summary.json is missing or "
+              << "says so); judged by the frames that it has\n";
+  }
   const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
   std::optional<GroundTruth> truth;
   if (!FLAGS_ground_truth.empty()) truth = ReadGroundTruth(FLAGS_ground_truth);

@@ -32,8 +32,11 @@ cv::Mat Scaled(const cv::Mat& picture) {
 
 MontageTile ReadTile(const std::string& text) {
   const std::size_t colon = text.find(':');
-  CheckOption(colon != std::string::npos, "--pictures", text, "CAPTION:FILE");
+  CheckOption(colon != std::string::npos, "pictures", text, "CAPTION:FILE");
   const std::string path = text.substr(colon + 1);
+  // OpenCV would print a warning of its own.
+  const bool exists = std::filesystem::is_regular_file(path);
+  if (!exists) throw InputError(path + ": not found; expected a picture");
   const cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR);
   if (picture.empty()) throw InputError(path + ": expected a picture");
   return {text.substr(0, colon), Scaled(picture)};
@@ -41,7 +44,7 @@ MontageTile ReadTile(const std::string& text) {
 
 void WritePicture(const std::string& path, const cv::Mat& picture) {
   const std::string type = std::filesystem::path(path).extension().string();
-  CheckOption(type == ".jpg" || type == ".png", "--output", "'" + path + "'",
+  CheckOption(type == ".jpg" || type == ".png", "output", "'" + path + "'",
               "a name ending in .jpg or .png");
   WritePathAtomically(path, [&](const std::string& temporary) {
     if (!cv::imwrite(temporary, picture, {cv::IMWRITE_JPEG_QUALITY, 85})) {
@@ -51,8 +54,10 @@ void WritePicture(const std::string& path, const cv::Mat& picture) {
 }
 
 int Run() {
-  CheckOption(FLAGS_tile_width >= 0 && FLAGS_tile_width <= 8192, "--tile_width",
+  CheckOption(FLAGS_tile_width >= 0 && FLAGS_tile_width <= 8192, "tile_width",
               FLAGS_tile_width, "0..8192");
+  CheckOption(!FLAGS_pictures.empty(), "pictures", "''",
+              "CAPTION:FILE,CAPTION:FILE,...");
   std::vector<MontageTile> tiles;
   for (const std::string& text : SplitAtCommas(FLAGS_pictures)) {
     tiles.push_back(ReadTile(text));

@@ -2,20 +2,20 @@
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
-#include <tbb/global_control.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <iomanip>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 
+#include "interruption.h"
 #include "network_flags.h"
+#include "progress_line.h"
 #include "run_flags.h"
+#include "sequence_flags.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
@@ -30,7 +30,6 @@
 #include "splitfusion/pipelines/surface_output.h"
 #include "tool_main.h"
 
-DEFINE_string(sequence, "", "Folder of the sequence, TUM RGB-D layout.");
 DEFINE_string(output, "", "Run directory to write.");
 DEFINE_bool(overwrite, false, "Replace an earlier run in --output.");
 DEFINE_string(masks, "auto",
@@ -39,23 +38,14 @@ DEFINE_string(masks, "auto",
 DEFINE_string(mask_kind, "non_rigid",
               "Of masks without classes: non_rigid or rigid.");
 DEFINE_string(labels, "", "File `class, rigid|non_rigid` a line.");
-DEFINE_int32(threads, 2, "Threads of all but Ceres.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
 DECLARE_string(preset);
+DECLARE_string(sequence);
 
 namespace splitfusion {
 namespace {
-
-/// Set by the first SIGINT or SIGTERM: the frame is finished and everything
-/// written. The second one ends the program.
-volatile std::sig_atomic_t interrupted = 0;
-
-void Interrupt(int signal) {
-  interrupted = 1;
-  std::signal(signal, SIG_DFL);
-}
 
 /// Refuses to clear a folder that the run is to read from.
 void CheckNotInOutput(const std::string& flag, const std::string& input) {
@@ -71,9 +61,9 @@ void CheckNotInOutput(const std::string& flag, const std::string& input) {
 
 /// The network of the flags; its masks are kept in the run directory.
 std::shared_ptr<Segmenter> MakeNetworkSegmenter() {
-  CheckOption(FLAGS_masks == "auto", "--masks", FLAGS_masks,
+  CheckOption(FLAGS_masks == "auto", "masks", FLAGS_masks,
               "auto with --model (or an empty --model= to read masks)");
-  auto network = std::make_unique<NetworkSegmenter>(NetworkOptionsFromFlags());
+  std::unique_ptr<NetworkSegmenter> network = NetworkFromFlags();
   const std::map<std::string, std::string> settings = network->Settings();
   return std::make_shared<RecordingSegmenter>(
       std::move(network), RunPaths(FLAGS_output).Detections(), settings);
@@ -98,7 +88,7 @@ std::shared_ptr<Segmenter> MakeSegmenter(const TumReader& reader) {
   if (folder == "auto") folder = FindMaskFolder(FLAGS_sequence);
   if (folder.empty() || folder == "none") return nullptr;
   CheckOption(FLAGS_mask_kind == "rigid" || FLAGS_mask_kind == "non_rigid",
-              "--mask_kind", FLAGS_mask_kind, "rigid or non_rigid");
+              "mask_kind", FLAGS_mask_kind, "rigid or non_rigid");
   auto segmenter = std::make_shared<MaskFolderSegmenter>(
       folder, FLAGS_mask_kind == "rigid" ? kUnnamedRigidClass : kUnnamedClass);
   CheckMasksFit(reader, *segmenter, folder);
@@ -108,9 +98,9 @@ std::shared_ptr<Segmenter> MakeSegmenter(const TumReader& reader) {
 /// One run: frames in, run directory out.
 class Run {
  public:
-  Run()
-      : reader_(FLAGS_sequence, ReaderOptionsFromFlags()),
-        fusion_(reader_.camera(), PipelineOptionsFromFlags(),
+  Run(const TumReaderOptions& reading, const PipelineOptions& options)
+      : reader_(FLAGS_sequence, reading),
+        fusion_(reader_.camera(), options,
                 FLAGS_labels.empty() ? LabelTable()
                                      : LabelTable::FromFile(FLAGS_labels),
                 MakeSegmenter(reader_)),
@@ -121,11 +111,11 @@ class Run {
 
   void Execute() {
     try {
-      while (interrupted == 0 && ProcessNext()) {
+      while (!Interrupted() && ProcessNext()) {
       }
     } catch (const std::exception&) {
       // A broken frame ends the run; what was computed until then is kept.
-      std::fputs(isatty(STDERR_FILENO) ? "\n" : "", stderr);
+      EndProgress();
       WriteResults(/*complete=*/false);
       throw;
     }
@@ -161,24 +151,46 @@ class Run {
     report.read_seconds = read_seconds;
     report.total_seconds += read_seconds;
     directory_.AddFrame(report, fusion_.trajectory().back());
+    WarnOfLostSurfaces(report);
+    WarnOfCoarseGraphs(report.frame);
+    const Stopwatch writing;
+    WritePictures(*frame, report.frame);
+    directory_.AddWritingSeconds(writing.Seconds());
+    ++done_;
+    ShowProgress(
+        done_, reader_.size(),
+        "frames, " + std::to_string(fusion_.surfaces().size()) + " surfaces",
+        since_start_.Seconds() / done_ * (reader_.size() - done_));
+    return true;
+  }
+
+  static void WarnOfLostSurfaces(const FrameReport& report) {
     for (const SurfaceReport& surface : report.surfaces) {
       if (surface.state != "lost") continue;
       LOG(WARNING) << "frame " << report.frame << ": surface " << surface.id
                    << " (" << surface.label << ") lost: " << surface.reason;
     }
-    const Stopwatch writing;
-    WritePictures(*frame, report.frame);
-    directory_.AddWritingSeconds(writing.Seconds());
-    ++done_;
-    PrintProgress();
-    return true;
+  }
+
+  /// Once a surface.
+  void WarnOfCoarseGraphs(int frame) {
+    for (const auto& [id, surface] : fusion_.surfaces()) {
+      const double planned = surface->planned_node_spacing();
+      const double spacing = surface->graph().node_spacing;
+      if (spacing <= planned || !coarse_.insert(id).second) continue;
+      LOG(WARNING) << "frame " << frame << ": surface " << id << " ("
+                   << surface->label() << ") has nodes every " << 1000 * spacing
+                   << " mm instead of " << 1000 * planned
+                   << " mm, to keep --max_nodes="
+                   << surface->options().graph.max_nodes;
+    }
   }
 
   void WritePictures(const Frame& frame, int index) const {
     if (FLAGS_write_masks) {
       WriteMask(directory_.paths(), frame.stem, fusion_.labels());
     }
-    if (FLAGS_pictures_every <= 0 || index % FLAGS_pictures_every != 0) return;
+    if (FLAGS_pictures_every == 0 || index % FLAGS_pictures_every != 0) return;
     const SceneRendering scene = RenderScene(
         fusion_.surfaces(), fusion_.camera(), fusion_.options().ray_cast);
     cv::Mat depth;
@@ -201,37 +213,28 @@ class Run {
     directory_.Finish(complete);
   }
 
-  void PrintProgress() const {
-    if (!isatty(STDERR_FILENO)) return;
-    const double left =
-        since_start_.Seconds() / done_ * (reader_.size() - done_);
-    std::fprintf(stderr, "\r\033[Kframe %d/%d, %zu surfaces, %.0f s left",
-                 done_, reader_.size(), fusion_.surfaces().size(), left);
-    if (done_ == reader_.size()) std::fputc('\n', stderr);
-  }
-
   TumReader reader_;
   SplitFusion fusion_;
   RunDirectory directory_;
   Stopwatch since_start_;
+  std::set<int> coarse_;  // Surfaces whose graph is coarser than planned.
   int done_ = 0;
 };
 
 int RunSequence() {
-  CheckOption(!FLAGS_sequence.empty(), "--sequence", "''",
-              "the folder of a sequence");
-  CheckOption(!FLAGS_output.empty(), "--output", "''", "a folder to write");
-  CheckOption(FLAGS_threads >= 1, "--threads", FLAGS_threads, ">= 1");
-  CheckNotInOutput("--sequence", FLAGS_sequence);
-  CheckNotInOutput("--masks", FLAGS_masks);
-  std::signal(SIGINT, Interrupt);
-  std::signal(SIGTERM, Interrupt);
-  const tbb::global_control threads(
-      tbb::global_control::max_allowed_parallelism,
-      static_cast<std::size_t>(FLAGS_threads));
-  cv::setNumThreads(FLAGS_threads);
+  const TumReaderOptions reading = ReaderOptionsFromFlags();
+  const PipelineOptions options = PipelineOptionsFromFlags();
+  CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
+  CheckOption(FLAGS_warped_every >= 0, "warped_every", FLAGS_warped_every,
+              "a number of frames, or 0");
+  CheckOption(FLAGS_pictures_every >= 0, "pictures_every", FLAGS_pictures_every,
+              "a number of frames, or 0");
+  CheckNotInOutput("sequence", FLAGS_sequence);
+  CheckNotInOutput("masks", FLAGS_masks);
+  CatchInterruption();
+  const ThreadLimit threads;
   SetBlasThreads(1);
-  Run().Execute();
+  Run(reading, options).Execute();
   return kExitDone;
 }
 

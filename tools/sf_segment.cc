@@ -1,17 +1,18 @@
 // Makes the instance masks of a sequence with a network.
 
 #include <gflags/gflags.h>
-#include <tbb/global_control.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "network_flags.h"
+#include "progress_line.h"
+#include "sequence_flags.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/peak_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
@@ -24,13 +25,10 @@
 #include "splitfusion/lib/sequence/tum_reader.h"
 #include "tool_main.h"
 
-DEFINE_string(sequence, "", "Folder of the sequence, TUM RGB-D layout.");
 DEFINE_string(output, "", "Folder of masks to write, or to go on with.");
 DEFINE_bool(overwrite, false, "Begin anew what is in --output.");
 DEFINE_string(overlays, "", "Folder for pictures of the masks; empty = none.");
-DEFINE_int32(first_frame, 0, "Frames before it are skipped.");
-DEFINE_int32(max_frames, 0, "Frames at most; 0 = all.");
-DEFINE_int32(threads, 2, "Threads of the network.");
+DECLARE_string(sequence);
 
 namespace splitfusion {
 namespace {
@@ -46,18 +44,15 @@ constexpr char kUsage[] =
 /// Colour images of the sequence with the stems of their depth images.
 class ColorFrames {
  public:
-  ColorFrames() {
-    TumReaderOptions options;
-    options.first_frame = FLAGS_first_frame;
-    options.max_frames = FLAGS_max_frames;
-    options.Check();
+  explicit ColorFrames(const TumReaderOptions& options) {
     pairs_ = FindAssociations(FLAGS_sequence, options.association_tolerance);
     first_ = options.first_frame;
     const int all = static_cast<int>(pairs_.size());
-    CheckOption(first_ < all, "--first_frame", first_,
+    CheckOption(first_ < all, "first_frame", first_,
                 "less than " + std::to_string(all) + ", the number of frames");
-    end_ = options.max_frames > 0 ? std::min(all, first_ + options.max_frames)
-                                  : all;
+    const int left = all - first_;
+    end_ = first_ +
+           (options.max_frames > 0 ? std::min(left, options.max_frames) : left);
   }
 
   int first() const { return first_; }
@@ -86,9 +81,10 @@ class ColorFrames {
 /// One pass over the sequence.
 class Segmentation {
  public:
-  Segmentation()
-      : network_(NetworkOptionsFromFlags()),
-        writer_(FLAGS_output, SettingsOf(network_)) {}
+  explicit Segmentation(const TumReaderOptions& options)
+      : frames_(options),
+        network_(NetworkFromFlags()),
+        writer_(FLAGS_output, SettingsOf(*network_)) {}
 
   void Execute() {
     for (int index = frames_.first(); index < frames_.end(); ++index) {
@@ -129,7 +125,7 @@ class Segmentation {
 
   std::vector<InstanceMask> Segment(const Frame& frame) {
     const Stopwatch stopwatch;
-    std::vector<InstanceMask> instances = network_.Segment(frame);
+    std::vector<InstanceMask> instances = network_->Segment(frame);
     seconds_ += stopwatch.Seconds();
     ++segmented_;
     instances_ += static_cast<int>(instances.size());
@@ -144,18 +140,15 @@ class Segmentation {
   }
 
   void PrintProgress(int end) const {
-    if (!isatty(STDERR_FILENO)) return;
-    const int left = frames_.end() - end;
     const double a_frame =
         segmented_ > 0 ? since_start_.Seconds() / segmented_ : 0.0;
-    std::fprintf(stderr, "\r\033[Kframe %d/%d, %d instances, %.0f s left",
-                 end - frames_.first(), frames_.end() - frames_.first(),
-                 instances_, a_frame * left);
-    if (left == 0) std::fputc('\n', stderr);
+    ShowProgress(end - frames_.first(), frames_.end() - frames_.first(),
+                 "frames, " + std::to_string(instances_) + " instances",
+                 a_frame * (frames_.end() - end));
   }
 
   ColorFrames frames_;
-  NetworkSegmenter network_;
+  std::unique_ptr<NetworkSegmenter> network_;
   MaskFolderWriter writer_;
   std::optional<MaskFolderSegmenter> earlier_;
   Stopwatch since_start_;
@@ -165,20 +158,15 @@ class Segmentation {
 };
 
 int Run() {
-  CheckOption(!FLAGS_sequence.empty(), "--sequence", "''",
-              "the folder of a sequence");
-  CheckOption(!FLAGS_output.empty(), "--output", "''", "a folder to write");
-  CheckOption(FLAGS_threads >= 1, "--threads", FLAGS_threads, ">= 1");
+  const TumReaderOptions options = FramesFromFlags();
+  CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
   CheckOption(fs::weakly_canonical(FLAGS_output) !=
                   fs::weakly_canonical(FLAGS_sequence),
-              "--output", FLAGS_output,
+              "output", FLAGS_output,
               "another folder than the sequence itself");
-  const tbb::global_control threads(
-      tbb::global_control::max_allowed_parallelism,
-      static_cast<std::size_t>(FLAGS_threads));
-  cv::setNumThreads(FLAGS_threads);
+  const ThreadLimit threads;
   if (FLAGS_overwrite) ClearMaskFolder(FLAGS_output);
-  Segmentation().Execute();
+  Segmentation(options).Execute();
   return kExitDone;
 }
 

@@ -1,11 +1,10 @@
 // Writes a synthetic RGB-D sequence with exact ground truth.
 
 #include <gflags/gflags.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <string>
 
+#include "progress_line.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/synthetic/synthetic_writer.h"
@@ -61,24 +60,16 @@ SyntheticOptions OptionsFromFlags() {
   return options;
 }
 
-void PrintProgress(int done, int total, double seconds) {
-  std::fprintf(stderr, "\r\033[K%d/%d frames, %.0f s left", done, total,
-               seconds / done * (total - done));
-  if (done == total) std::fputc('\n', stderr);
-}
-
 int Run() {
-  CheckOption(!FLAGS_output.empty(), "output", FLAGS_output,
-              "the folder to write (--output=DIR)");
+  CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
   SyntheticWriterOptions writer_options;
   writer_options.mesh_every = FLAGS_mesh_every;
   writer_options.overwrite = FLAGS_overwrite;
-  const bool talk = isatty(STDERR_FILENO) != 0;
   const Stopwatch stopwatch;
   WriteSyntheticSequence(
       OptionsFromFlags(), writer_options, FLAGS_output, [&](int done) {
-        if (!talk) return;
-        PrintProgress(done, FLAGS_frames, stopwatch.Seconds());
+        ShowProgress(done, FLAGS_frames, "frames",
+                     stopwatch.Seconds() / done * (FLAGS_frames - done));
       });
   return kExitDone;
 }

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <vector>
 
+#include "flag_names.h"
 #include "splitfusion/lib/base/error.h"
 
 DECLARE_bool(help);
@@ -48,17 +49,9 @@ std::string Wrapped(const std::string& text) {
   return lines;
 }
 
-/// Default of a flag as one would write it: 0.3, not 0.29999999999999999.
-std::string DefaultText(const gflags::CommandLineFlagInfo& flag) {
-  if (flag.type != "double") return flag.default_value;
-  std::ostringstream text;
-  text << std::stod(flag.default_value);
-  return text.str();
-}
-
 std::string FlagHelp(const gflags::CommandLineFlagInfo& flag) {
   std::string head = "  --" + flag.name;
-  const std::string value = DefaultText(flag);
+  const std::string value = FlagValueText(flag.type, flag.default_value);
   if (!value.empty()) head += "=" + value;
   if (head.size() + 2 > kTextColumn) {
     head += "\n" + std::string(kTextColumn, ' ');
@@ -71,14 +64,13 @@ std::string FlagHelp(const gflags::CommandLineFlagInfo& flag) {
 /// Help on the flags of this folder by the file that defines them; of a file
 /// that tools share the name is a heading.
 std::map<std::string, std::string> HelpByFile() {
-  namespace fs = std::filesystem;
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
   std::map<std::string, std::string> help;
   for (const auto& flag : flags) {
-    const fs::path file(flag.filename);
-    if (file.parent_path().filename() != "tools") continue;
-    help[file.stem().string()] += FlagHelp(flag) + '\n';
+    if (!IsToolFlag(flag.name)) continue;
+    help[std::filesystem::path(flag.filename).stem().string()] +=
+        FlagHelp(flag) + '\n';
   }
   return help;
 }
@@ -164,6 +156,10 @@ int ToolMain(int argc, char** argv, const std::string& usage,
   google::InitGoogleLogging(argv[0]);
   try {
     return ParseFlags(argc, argv, name, usage) ? body() : kExitDone;
+  } catch (const OptionError& error) {
+    std::cerr << name << ": " << (IsToolFlag(error.field()) ? "--" : "")
+              << error.what() << '\n';
+    return kExitBadInput;
   } catch (const InputError& error) {
     std::cerr << name << ": " << error.what() << '\n';
     return kExitBadInput;

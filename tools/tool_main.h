@@ -15,7 +15,9 @@ enum ExitCode {
 };
 
 /// The main() of a tool: starts glog (to stderr), parses the flags, runs `body`
-/// and turns exceptions into exit codes, InputError into kExitBadInput.
+/// and turns exceptions into exit codes, InputError into kExitBadInput. Where
+/// an OptionError is about a field that is named as a flag, the message names
+/// the flag.
 ///
 /// Unknown flags, bad values and arguments that are not flags end the program
 /// with kExitBadInput and one line on stderr. `--help` prints `usage` and the

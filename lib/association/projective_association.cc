@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include "splitfusion/lib/base/error.h"
 
@@ -24,6 +26,13 @@ enum class Outcome : std::uint8_t {
 
 /// Distances up to so many sigma of the depth noise pass the gate.
 constexpr float kNoiseFactor = 3.0f;
+
+/// An angle, given in radians, as messages state it.
+std::string DegreesText(double radians) {
+  std::ostringstream text;
+  text << radians * 180 / M_PI << " degrees";
+  return text.str();
+}
 
 Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
@@ -143,9 +152,9 @@ void Count(Outcome outcome, AssociationCounts* counts) {
 void AssociationGates::Check() const {
   CheckOption(distance > 0, "gate distance", distance, "metres > 0");
   CheckOption(normal_angle > 0 && normal_angle <= 3.15, "gate normal_angle",
-              normal_angle, "radians in (0, pi]");
+              DegreesText(normal_angle), "an angle in (0, 180] degrees");
   CheckOption(grazing_angle > 0 && grazing_angle <= 1.58, "gate grazing_angle",
-              grazing_angle, "radians in (0, pi/2]");
+              DegreesText(grazing_angle), "an angle in (0, 90] degrees");
 }
 
 Association Associate(const std::vector<ModelSample>& samples,

@@ -17,18 +17,38 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// An option out of its range.
+class OptionError : public InputError {
+ public:
+  /// "<field> = <value>: expected <expected>".
+  OptionError(const std::string& field, const std::string& value,
+              const std::string& expected)
+      : InputError(field + " = " + value + ": expected " + expected),
+        field_(field),
+        expected_(expected) {}
+
+  /// Name of the option.
+  const std::string& field() const { return field_; }
+  /// What its value should be.
+  const std::string& expected() const { return expected_; }
+
+ private:
+  std::string field_;
+  std::string expected_;
+};
+
 /// Checks one option; for use in the Check() members of option structs.
 ///
-/// @throw InputError "<field> = <value>: expected <expected>" unless `ok`.
+/// @throw OptionError unless `ok`.
 /// Values that are not finite are refused whatever `ok` says.
 template <typename T>
 void CheckOption(bool ok, const std::string& field, const T& value,
                  const std::string& expected) {
   if constexpr (std::is_floating_point_v<T>) ok = ok && std::isfinite(value);
   if (ok) return;
-  std::ostringstream message;
-  message << field << " = " << value << ": expected " << expected;
-  throw InputError(message.str());
+  std::ostringstream text;
+  text << value;
+  throw OptionError(field, text.str(), expected);
 }
 
 }  // namespace splitfusion

@@ -170,7 +170,8 @@ void SolverOptions::Check() const {
               "trust_region", trust_region,
               "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
               "factorisation)");
-  CheckOption(threads >= 1, "solver_threads", threads, ">= 1");
+  CheckOption(threads >= 1 && threads <= 1024, "solver_threads", threads,
+              "1..1024");
   CheckOption(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
   CheckOption(max_linear_solver_iterations >= 1, "max_linear_solver_iterations",
               max_linear_solver_iterations, ">= 1");

@@ -167,7 +167,8 @@ void EvaluationOptions::Check() const {
   attachment.Check();
   CheckOption(track_frame >= -1, "track_frame", track_frame,
               "a frame index, or -1");
-  CheckOption(track_frames >= 1, "track_frames", track_frames, ">= 1");
+  CheckOption(track_frames >= 1 && track_frames <= 1000000, "track_frames",
+              track_frames, "1..1000000");
   CheckOption(depth_every >= 0, "depth_every", depth_every,
               "a number of frames, or 0");
 }

@@ -82,7 +82,8 @@ std::vector<Eigen::Vector3i> SearchTriangles(const TriangleMesh& mesh) {
 }  // namespace
 
 void SurfaceErrorOptions::Check() const {
-  CheckOption(samples >= 1, "samples", samples, ">= 1");
+  CheckOption(samples >= 1 && samples <= 10000000, "samples", samples,
+              "1..10000000");
   CheckOption(max_distance > 0, "max_distance", max_distance, "metres > 0");
   CheckOption(min_seen >= 0, "min_seen", min_seen, ">= 0");
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr int kGap = 4;  // Pixels between tiles.
 
 void CheckTiles(const std::vector<MontageTile>& tiles, int columns) {
-  CheckOption(columns > 0, "montage columns", columns, "at least 1");
+  CheckOption(columns > 0, "columns", columns, "at least 1");
   CheckOption(!tiles.empty(), "montage tiles", tiles.size(), "at least 1");
   for (const MontageTile& tile : tiles) {
     CheckOption(tile.picture.type() == CV_8UC3 && !tile.picture.empty(),

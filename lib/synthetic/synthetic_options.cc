@@ -31,7 +31,7 @@ SyntheticSceneKind ParseSyntheticSceneKind(const std::string& word) {
     if (word == ToString(kind)) return kind;
     known += (known.empty() ? "" : ", ") + ToString(kind);
   }
-  throw InputError("scene = " + word + ": expected one of " + known);
+  throw OptionError("scene", word, "one of " + known);
 }
 
 void SyntheticOptions::Check() const {

@@ -40,6 +40,7 @@ void TsdfOptions::Check() const {
   CheckOption(truncation >= 2 * voxel_size, "truncation", truncation,
               "at least 2 voxels (" + std::to_string(2 * voxel_size) + " m)");
   CheckOption(max_weight >= 1, "max_weight", max_weight, ">= 1");
+  CheckOption(max_free_weight > 0, "max_free_weight", max_free_weight, "> 0");
 }
 
 void TsdfVolume::Grids::Touch(const openvdb::Coord& origin) {

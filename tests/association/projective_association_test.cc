@@ -212,11 +212,13 @@ TEST(AssociationGates, RefuseValuesOutOfRange) {
   gates = AssociationGates();
   gates.normal_angle = 4;
   ExpectInputError([&] { gates.Check(); },
-                   "gate normal_angle = 4: expected radians in (0, pi]");
+                   "gate normal_angle = 229.183 degrees: expected an angle in "
+                   "(0, 180] degrees");
   gates = AssociationGates();
   gates.grazing_angle = 2;
   ExpectInputError([&] { gates.Check(); },
-                   "gate grazing_angle = 2: expected radians in (0, pi/2]");
+                   "gate grazing_angle = 114.592 degrees: expected an angle in "
+                   "(0, 90] degrees");
 }
 
 }  // namespace

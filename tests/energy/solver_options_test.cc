@@ -53,7 +53,7 @@ TEST(SolverOptions, DoglegNeedsAFactorisation) {
 
 TEST(SolverOptions, RefuseValuesOutOfRange) {
   ExpectRefused([](SolverOptions* o) { o->threads = 0; },
-                "solver_threads = 0: expected >= 1");
+                "solver_threads = 0: expected 1..1024");
   ExpectRefused([](SolverOptions* o) { o->max_iterations = 0; },
                 "max_iterations = 0: expected >= 1");
   ExpectRefused([](SolverOptions* o) { o->max_linear_solver_iterations = -3; },

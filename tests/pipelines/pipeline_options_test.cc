@@ -28,7 +28,8 @@ TEST(PipelineOptions, RefuseValuesOutOfRange) {
   ExpectRefused([](PipelineOptions* o) { o->render_stride = 0; },
                 "render_stride = 0: expected 1..8 pixels");
   ExpectRefused([](PipelineOptions* o) { o->render_stride = 3; },
-                "a multiple of render_stride (3)");
+                "render_stride = 3: expected a divisor of the stride of every "
+                "tracking stage (8)");
   ExpectRefused([](PipelineOptions* o) { o->min_birth_area = 1; },
                 "min_birth_area = 1: expected a fraction of the image");
   ExpectRefused([](PipelineOptions* o) { o->max_lost_young = 0; },

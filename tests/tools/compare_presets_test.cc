@@ -95,6 +95,13 @@ TEST_F(ComparePresets, PrintsTheFiguresOfEveryPreset) {
                 "splitfusion/pictures/000010_composite.png\n");
 }
 
+TEST_F(ComparePresets, HelpIsItsLeadingComment) {
+  EXPECT_EQ(Run("--help"), 0);
+  const std::string said = folder_.Read("said.txt");
+  EXPECT_THAT(said, testing::StartsWith("Runs every preset on every sequence"));
+  EXPECT_THAT(said, testing::EndsWith("if not build/release/bin.\n"));
+}
+
 TEST_F(ComparePresets, SaysWhatIsMissing) {
   EXPECT_EQ(Run("--output=" + (folder_ / "out")), 2);
   EXPECT_THAT(folder_.Read("said.txt"), HasSubstr("folder of a sequence"));

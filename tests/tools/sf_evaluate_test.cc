@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/bent_plate.h"
+#include "support/expect_refused.h"
 #include "support/program.h"
 #include "support/shared_data.h"
 #include "support/temporary_folder.h"
@@ -33,15 +34,9 @@ class SfEvaluate : public ::testing::Test {
     return RunProgram("sf_evaluate", arguments);
   }
 
-  /// Expects exit code 2, nothing on stdout and one line that says `text`.
   static void ExpectRefused(const std::string& arguments,
                             const std::string& text) {
-    const ProgramResult result = Run(arguments);
-    EXPECT_EQ(result.exit_code, 2) << arguments;
-    EXPECT_EQ(result.output, "");
-    EXPECT_THAT(result.errors, HasSubstr(text));
-    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1)
-        << result.errors;
+    splitfusion::ExpectRefused("sf_evaluate", arguments, text);
   }
 
   TemporaryFolder folder_;
@@ -72,6 +67,21 @@ TEST_F(SfEvaluate, NeedsNoTruthToCompareTheModelWithTheLiveDepth) {
   const auto json = nlohmann::json::parse(folder_.Read("run/evaluation.json"));
   EXPECT_EQ(json["depth_agreement"][1]["frames"], 4);
   EXPECT_LT(json["depth_agreement"][1]["distances"]["median"], 0.0005);
+}
+
+TEST_F(SfEvaluate, SaysWhenTheRunIsUnfinished) {
+  const std::string arguments = "--depth_every=0 --run=" + (folder_ / "run");
+  const std::string text = "/run: unfinished run (summary.json is missing";
+  folder_.Write("run/summary.json", "{\"complete\": true}");
+  ProgramResult result = Run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, testing::Not(HasSubstr("unfinished")));
+  folder_.Write("run/summary.json", "{\"complete\": false}");
+  EXPECT_THAT(Run(arguments).output, HasSubstr(text));
+  std::filesystem::remove(folder_ / "run/summary.json");
+  result = Run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr(text));
 }
 
 TEST_F(SfEvaluate, FollowsQueryPoints) {

@@ -1,18 +1,16 @@
 // The program sf_montage, as others call it.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/report/montage.h"
+#include "support/expect_refused.h"
 #include "support/program.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(SfMontage, PutsScaledPicturesSideBySide) {
   if (!HasProgram("sf_montage")) GTEST_SKIP() << "sf_montage is not built";
@@ -35,18 +33,19 @@ TEST(SfMontage, PutsScaledPicturesSideBySide) {
 TEST(SfMontage, SaysWhatIsWrong) {
   if (!HasProgram("sf_montage")) GTEST_SKIP() << "sf_montage is not built";
   const TemporaryFolder folder;
-  const auto refused = [&](const std::string& arguments) {
-    const ProgramResult result = RunProgram("sf_montage", arguments);
-    EXPECT_EQ(result.exit_code, 2);
-    return result.errors;
-  };
-  EXPECT_THAT(refused("--pictures=nothing --output=a.jpg"),
-              HasSubstr("CAPTION:FILE"));
-  EXPECT_THAT(refused("--pictures=a:" + (folder / "no.png")),
-              HasSubstr("no.png: expected a picture"));
+  ExpectRefused("sf_montage", "", "--pictures = '': expected CAPTION:FILE");
+  ExpectRefused("sf_montage", "--pictures=nothing --output=a.jpg",
+                "--pictures = nothing: expected CAPTION:FILE");
+  ExpectRefused("sf_montage", "--pictures=a:" + (folder / "no.png"),
+                "no.png: not found; expected a picture");
+  ExpectRefused("sf_montage", "--pictures=a:" + folder.Write("b.png", "text"),
+                "b.png: expected a picture");
   cv::imwrite(folder / "a.png", cv::Mat(4, 8, CV_8UC3, cv::Scalar::all(0)));
-  EXPECT_THAT(refused("--output=a.txt --pictures=a:" + (folder / "a.png")),
-              HasSubstr("a name ending in .jpg or .png"));
+  const std::string picture = "--pictures=a:" + (folder / "a.png");
+  ExpectRefused("sf_montage", "--output=a.txt " + picture,
+                "a name ending in .jpg or .png");
+  ExpectRefused("sf_montage", "--columns=0 " + picture,
+                "--columns = 0: expected at least 1");
 }
 
 }  // namespace

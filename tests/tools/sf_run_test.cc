@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "support/expect_refused.h"
 #include "support/program.h"
 #include "support/temporary_folder.h"
 
@@ -54,17 +55,6 @@ class SfRun : public ::testing::Test {
     return RunProgram("sf_run", "--sequence=" + (folder_ / "sequence") +
                                     " --output=" + (folder_ / output) + " " +
                                     arguments);
-  }
-
-  /// Expects exit code 2, nothing on stdout and one line that says `text`.
-  static void ExpectRefused(const std::string& program,
-                            const std::string& arguments,
-                            const std::string& text) {
-    const ProgramResult result = RunProgram(program, arguments);
-    EXPECT_EQ(result.exit_code, 2) << program << " " << arguments;
-    EXPECT_EQ(result.output, "");
-    EXPECT_THAT(result.errors, HasSubstr(text));
-    EXPECT_EQ(LineCount(result.errors), 1) << result.errors;
   }
 
   TemporaryFolder folder_;
@@ -216,15 +206,33 @@ TEST_F(SfRun, BadOptionsEndWithTwoAndLeaveNothing) {
   const auto refused = [&](const std::string& option, const std::string& text) {
     ExpectRefused("sf_run", start + option, text);
   };
-  refused("--preset=fusion", "preset = fusion: expected background_only");
+  refused("--preset=fusion", "--preset = fusion: expected background_only");
   refused("--terms=arapp", "term 'arapp' is unknown: expected arap");
-  refused("--linear_solver=lu", "linear_solver = lu: expected auto");
-  refused("--object_voxel=0", "voxel_size = 0");
+  refused("--linear_solver=lu", "--linear_solver = lu: expected auto");
+  refused("--object_voxel=0", "--object_voxel = 0: expected metres");
   refused("--mask_kind=soft", "--mask_kind = soft: expected rigid");
   refused("--masks=/no/such/folder", "/no/such/folder");
   refused("--intrinsics=1,2", "--intrinsics=1,2: expected fx,fy,cx,cy");
-  refused("--max_frames=-1", "max_frames = -1");
+  refused("--max_frames=-1", "--max_frames = -1");
   EXPECT_FALSE(folder_.Has("run"));
+}
+
+TEST_F(SfRun, WarnsOnceOfEveryGraphThatIsCoarserThanPlanned) {
+  Synthesize();
+  const ProgramResult result =
+      Run("run", "--max_nodes=20 --pictures_every=0 --warped_every=0");
+  EXPECT_EQ(result.exit_code, 0);
+  const auto summary = nlohmann::json::parse(folder_.Read("run/summary.json"));
+  const auto& person = summary["surfaces"][1];
+  ASSERT_EQ(person["label"], "person");
+  EXPECT_GT(person["node_spacing"], 0.04);
+  const std::string text = "surface 1 (person) has nodes every ";
+  const std::size_t first = result.errors.find(text);
+  ASSERT_NE(first, std::string::npos) << result.errors;
+  EXPECT_EQ(result.errors.find(text, first + 1), std::string::npos);
+  EXPECT_THAT(result.errors,
+              AllOf(HasSubstr(" mm instead of 40 mm, to keep --max_nodes=20"),
+                    testing::Not(HasSubstr("(background) has nodes"))));
 }
 
 TEST_F(SfRun, RefusesToOverwriteUnlessTold) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "support/expect_refused.h"
 #include "support/program.h"
 #include "support/temporary_folder.h"
 #include "support/tiny_onnx.h"
@@ -45,11 +46,11 @@ class SfSegment : public ::testing::Test {
   }
   void ExpectRefused(const std::string& program, const std::string& flags,
                      const std::string& text) const {
-    const ProgramResult result = Run(program, "refused", flags);
-    EXPECT_EQ(result.exit_code, 2) << flags;
-    EXPECT_THAT(result.errors, HasSubstr(text));
-    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1)
-        << result.errors;
+    splitfusion::ExpectRefused(program,
+                               "--sequence=" + (folder_ / "sequence") +
+                                   " --output=" + (folder_ / "refused") + " " +
+                                   flags,
+                               text);
     EXPECT_FALSE(folder_.Has("refused"));
   }
   /// Stems of the depth images.
@@ -133,6 +134,25 @@ TEST_F(SfSegment, ARunWithANetworkIsRepeatedFromItsMasks) {
   EXPECT_FALSE(folder_.Has("run/detections"));
 }
 
+TEST_F(SfSegment, MasksOfAnotherSequenceAreNotGoneOnWith) {
+  ASSERT_EQ(Run("sf_segment", "masks", NetworkFlags()).exit_code, 0);
+  const std::string stem = Stems()[0];
+  const std::string mask = folder_.Read("masks/" + stem + ".png");
+  fs::copy(folder_ / "sequence", folder_ / "twin", fs::copy_options::recursive);
+  const std::string other = "--sequence=" + (folder_ / "twin") +
+                            " --output=" + (folder_ / "masks") + " " +
+                            NetworkFlags();
+  splitfusion::ExpectRefused("sf_segment", other, "another sequence (");
+  EXPECT_EQ(folder_.Read("masks/" + stem + ".png"), mask);
+  // A path written in another way is the same sequence.
+  EXPECT_EQ(RunProgram("sf_segment",
+                       "--sequence=" + (folder_ / "twin/../sequence") +
+                           " --output=" + (folder_ / "masks") + NetworkFlags())
+                .exit_code,
+            0);
+  EXPECT_EQ(RunProgram("sf_segment", other + "--overwrite").exit_code, 0);
+}
+
 TEST_F(SfSegment, BadUsageEndsWithTwoAndOneLine) {
   const std::string model = "--model=" + (folder_ / "tiny.onnx") + " ";
   ExpectRefused("sf_segment", "", "model = '': expected an ONNX file");
@@ -144,9 +164,13 @@ TEST_F(SfSegment, BadUsageEndsWithTwoAndOneLine) {
                 "expected 1x86xN, a box, 80 classes");
   ExpectRefused("sf_segment", NetworkFlags() + "--network_size=640",
                 "--network_size = 640: expected WxH");
-  ExpectRefused("sf_segment", NetworkFlags() + "--top_k=0", "top_k = 0");
+  ExpectRefused("sf_segment", NetworkFlags() + "--top_k=0", "--top_k = 0");
   ExpectRefused("sf_segment", NetworkFlags() + "--first_frame=3",
                 "--first_frame = 3: expected less than 3");
+  ExpectRefused("sf_segment", NetworkFlags() + "--network_size=9999x9999",
+                "--network_size = 9999x9999: expected WxH");
+  ExpectRefused("sf_segment", NetworkFlags() + "--threads=2000",
+                "--threads = 2000: expected 1..1024");
   ExpectRefused("sf_run", "--decoder=yolact", "--model = ''");
   ExpectRefused("sf_run", NetworkFlags() + "--masks=none",
                 "--masks = none: expected auto with --model");

@@ -1,0 +1,74 @@
+// What the tools say of values that are out of their range: the flag as typed.
+
+#include <gtest/gtest.h>
+
+#include "support/expect_refused.h"
+#include "support/program.h"
+
+namespace splitfusion {
+namespace {
+
+class FlagMessages : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* program :
+         {"sf_batch", "sf_evaluate", "sf_montage", "sf_run", "sf_synth"}) {
+      if (!HasProgram(program)) GTEST_SKIP() << program << " is not built";
+    }
+  }
+  /// Options are checked before anything is read.
+  static void RunRefuses(const std::string& option, const std::string& text) {
+    ExpectRefused("sf_run", "--sequence=none --output=none " + option, text);
+  }
+};
+
+TEST_F(FlagMessages, NameTheFlagWhereTheOptionHasAnotherName) {
+  RunRefuses("--background_voxel=-1", "--background_voxel = -1: expected metr");
+  RunRefuses("--object_voxel=1.5", "--object_voxel = 1.5: expected metres");
+  RunRefuses("--background_truncation=0.01",
+             "--background_truncation = 0.01: expected at least 2 voxels");
+  RunRefuses("--object_voxel=0.02", "--object_truncation = 0.03: expected at");
+  RunRefuses("--object_min_piece=-1", "--object_min_piece = -1: expected squ");
+  RunRefuses("--object_free_weight=0", "--object_free_weight = 0: expected >");
+  RunRefuses("--solver_iterations=0", "--solver_iterations = 0: expected");
+  RunRefuses("--linear_iterations=0", "--linear_iterations = 0: expected");
+  RunRefuses("--rigid_distance=0", "--rigid_distance = 0: expected metres");
+  RunRefuses("--non_rigid_distance=0", "--non_rigid_distance = 0: expected");
+}
+
+TEST_F(FlagMessages, NameTheFlagOfAnOptionOfTheSameName) {
+  RunRefuses("--render_stride=3", "--render_stride = 3: expected a divisor");
+  RunRefuses("--max_nodes=0", "--max_nodes = 0: expected >= 1");
+  RunRefuses("--far_spacing=0.01",
+             "--far_spacing = 0.01: expected metres >= near_spacing");
+  RunRefuses("--min_score=2", "--min_score = 2: expected 0..1");
+  RunRefuses("--intrinsics=0,1,1,1,64,48", "--intrinsics=0,1,1,1,64,48: camer");
+  ExpectRefused("sf_batch", "--jobs=0 --sequences=. --output=none",
+                "--jobs = 0: expected 1..");
+  ExpectRefused("sf_synth", "--output=none --scene=moon",
+                "--scene = moon: expected one of room_person");
+  ExpectRefused("sf_evaluate", "--run=none --depth_every=-1",
+                "--depth_every = -1: expected");
+}
+
+TEST_F(FlagMessages, SayAnglesInTheFlagsUnit) {
+  RunRefuses("--rigid_angle=200",
+             "--rigid_angle = 200: expected an angle in (0, 180] degrees");
+  RunRefuses("--non_rigid_angle=-5",
+             "--non_rigid_angle = -5: expected an angle in (0, 180] degrees");
+}
+
+TEST_F(FlagMessages, NumbersThatNoMachineCouldServeAreRefused) {
+  RunRefuses("--threads=100000000", "--threads = 100000000: expected 1..1024");
+  RunRefuses("--threads=-1", "--threads = -1: expected 1..1024, or 0");
+  RunRefuses("--solver_threads=2000000000", "--solver_threads = 2000000000");
+  ExpectRefused("sf_batch", "--jobs=100000000 --sequences=. --output=none",
+                "--jobs = 100000000: expected 1..1024");
+  ExpectRefused("sf_evaluate", "--run=none --samples=2000000000",
+                "--samples = 2000000000: expected 1..");
+  ExpectRefused("sf_evaluate", "--run=none --track_frames=2000000000",
+                "--track_frames = 2000000000: expected 1..");
+}
+
+}  // namespace
+}  // namespace splitfusion
