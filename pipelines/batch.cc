@@ -13,7 +13,6 @@
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_paths.h"
-#include "splitfusion/pipelines/child_process.h"
 
 namespace splitfusion {
 namespace {
@@ -39,7 +38,8 @@ bool Record(const ChildResult& child, BatchResult* result) {
   return false;
 }
 
-bool Reconstruct(const BatchOptions& options, BatchResult* result) {
+bool Reconstruct(const BatchOptions& options, const StopRequest& stop,
+                 BatchResult* result) {
   const BatchRun& run = result->run;
   const RunPaths paths(run.folder);
   result->skipped = !options.overwrite && IsComplete(paths);
@@ -52,25 +52,27 @@ bool Reconstruct(const BatchOptions& options, BatchResult* result) {
   // Last, so that they win over those of an earlier run's options.flags.
   arguments.push_back("--sequence=" + run.sequence_folder);
   arguments.push_back("--output=" + run.folder);
-  return Record(RunChild(arguments, run.folder + "/run"), result);
+  return Record(RunChild(arguments, run.folder + "/run", stop), result);
 }
 
-void Evaluate(const BatchOptions& options, BatchResult* result) {
+void Evaluate(const BatchOptions& options, const StopRequest& stop,
+              BatchResult* result) {
   const BatchRun& run = result->run;
   const RunPaths paths(run.folder);
   if (run.ground_truth.empty()) return;
   if (result->skipped && fs::exists(paths.Evaluation())) return;
   Record(RunChild({options.evaluate_program, "--run=" + run.folder,
                    "--ground_truth=" + run.ground_truth},
-                  run.folder + "/evaluate"),
+                  run.folder + "/evaluate", stop),
          result);
 }
 
-BatchResult RunOne(const BatchOptions& options, const BatchRun& run) {
+BatchResult RunOne(const BatchOptions& options, const StopRequest& stop,
+                   const BatchRun& run) {
   BatchResult result;
   result.run = run;
   MakeFolder(run.folder);
-  if (Reconstruct(options, &result)) Evaluate(options, &result);
+  if (Reconstruct(options, stop, &result)) Evaluate(options, stop, &result);
   result.figures = ReadFigures(run.folder);
   return result;
 }
@@ -78,9 +80,11 @@ BatchResult RunOne(const BatchOptions& options, const BatchRun& run) {
 /// Hands the runs of a plan to threads and collects the results.
 class BatchQueue {
  public:
-  BatchQueue(const BatchOptions& options, BatchCallback progress)
+  BatchQueue(const BatchOptions& options, BatchCallback progress,
+             StopRequest stop)
       : options_(options),
         progress_(std::move(progress)),
+        stop_(std::move(stop)),
         plan_(PlanBatch(options)),
         results_(plan_.size()) {}
 
@@ -99,7 +103,7 @@ class BatchQueue {
   void Work() {
     try {
       while (const std::optional<std::size_t> index = Take()) {
-        Give(*index, RunOne(options_, plan_[*index]));
+        Give(*index, RunOne(options_, stop_, plan_[*index]));
       }
     } catch (...) {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -109,7 +113,8 @@ class BatchQueue {
 
   std::optional<std::size_t> Take() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (failure_ || next_ == plan_.size()) return std::nullopt;
+    if (failure_ || next_ == plan_.size() || (stop_ && stop_()))
+      return std::nullopt;
     return next_++;
   }
 
@@ -139,6 +144,7 @@ class BatchQueue {
 
   const BatchOptions& options_;
   const BatchCallback progress_;
+  const StopRequest stop_;
   const std::vector<BatchRun> plan_;
   const Stopwatch stopwatch_;
   std::mutex mutex_;  // Guards everything below.
@@ -152,8 +158,9 @@ class BatchQueue {
 }  // namespace
 
 std::vector<BatchResult> RunBatch(const BatchOptions& options,
-                                  const BatchCallback& progress) {
-  return BatchQueue(options, progress).Run();
+                                  const BatchCallback& progress,
+                                  const StopRequest& stop) {
+  return BatchQueue(options, progress, stop).Run();
 }
 
 int CountFailed(const std::vector<BatchResult>& results) {

@@ -6,6 +6,7 @@
 
 #include "splitfusion/pipelines/batch_plan.h"
 #include "splitfusion/pipelines/batch_summary.h"
+#include "splitfusion/pipelines/child_process.h"
 
 namespace splitfusion {
 
@@ -25,12 +26,15 @@ using BatchCallback = std::function<void(const BatchProgress&)>;
 /// RUN/run.log, RUN/run.err.log, RUN/evaluate.log, RUN/evaluate.err.log. A run
 /// that fails is recorded and the batch goes on; a finished one (its
 /// summary.json is there) is kept unless `overwrite`. The summary files of the
-/// batch are brought up to date after every run.
+/// batch are brought up to date after every run. Once `stop` (may be empty; may
+/// be asked from any thread) says true, what runs is asked to stop and recorded
+/// as it ends, and no further run is started.
 ///
-/// @return one result a run, in the order of the plan.
+/// @return one result a run that was started or kept, in the order of the plan.
 /// @throw InputError as PlanBatch, or if the output cannot be written.
 std::vector<BatchResult> RunBatch(const BatchOptions& options,
-                                  const BatchCallback& progress = {});
+                                  const BatchCallback& progress = {},
+                                  const StopRequest& stop = {});
 
 /// Number of runs that failed.
 int CountFailed(const std::vector<BatchResult>& results);

@@ -5,14 +5,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <fstream>
+#include <thread>
 
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
 namespace {
+
+/// Between two looks at a child.
+constexpr std::chrono::milliseconds kPollInterval(20);
 
 /// Where the child's streams go; released with the object.
 class FileActions {
@@ -32,13 +37,45 @@ class FileActions {
   posix_spawn_file_actions_t actions_;
 };
 
+/// How the child starts; released with the object.
+class Attributes {
+ public:
+  /// A process group of its own, and the default disposition of the signals
+  /// that ask it to stop.
+  Attributes() {
+    posix_spawnattr_init(&attributes_);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    posix_spawnattr_setsigdefault(&attributes_, &signals);
+    posix_spawnattr_setflags(&attributes_,
+                             POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+  }
+  ~Attributes() { posix_spawnattr_destroy(&attributes_); }
+  Attributes(const Attributes&) = delete;
+  Attributes& operator=(const Attributes&) = delete;
+
+  const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_;
+};
+
 void CheckWritable(const std::string& path) {
   if (!std::ofstream(path)) throw InputError(path + ": cannot be written");
 }
 
-int WaitFor(pid_t pid) {
+int WaitFor(pid_t pid, const StopRequest& stop) {
   int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  bool told = false;
+  while (waitpid(pid, &status, WNOHANG) == 0) {
+    if (!told && stop && stop()) {
+      kill(pid, SIGINT);
+      told = true;
+    }
+    std::this_thread::sleep_for(kPollInterval);
   }
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
@@ -58,7 +95,7 @@ std::string LastLine(const std::string& path) {
 }  // namespace
 
 ChildResult RunChild(const std::vector<std::string>& arguments,
-                     const std::string& log) {
+                     const std::string& log, const StopRequest& stop) {
   const std::string output = log + ".log";
   const std::string errors = log + ".err.log";
   CheckWritable(output);
@@ -74,12 +111,12 @@ ChildResult RunChild(const std::vector<std::string>& arguments,
   }
   argv.push_back(nullptr);
   pid_t pid = 0;
-  const int failure =
-      posix_spawn(&pid, argv[0], actions.get(), nullptr, argv.data(), environ);
+  const int failure = posix_spawn(&pid, argv[0], actions.get(),
+                                  Attributes().get(), argv.data(), environ);
   if (failure != 0) {
     return {127, arguments.front() + ": " + std::strerror(failure)};
   }
-  ChildResult result{WaitFor(pid), ""};
+  ChildResult result{WaitFor(pid, stop), ""};
   result.last_error_line = LastLine(errors);
   return result;
 }

@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_PIPELINES_CHILD_PROCESS_H_
 #define SPLITFUSION_PIPELINES_CHILD_PROCESS_H_
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,13 +14,19 @@ struct ChildResult {
   std::string last_error_line;  ///< Last line on stderr that is not empty.
 };
 
-/// Runs a program without a shell, waits for it, and captures what it says.
+/// Asked now and then while a child runs: whether it should stop.
+using StopRequest = std::function<bool()>;
+
+/// Runs a program without a shell, waits for it, and captures what it says. The
+/// child is in a process group of its own, so that Ctrl-C on the terminal does
+/// not reach it; once `stop` (may be empty) says true it gets one SIGINT, and
+/// is waited for as before.
 ///
 /// @param arguments the program's path, then its arguments.
 /// @param log base path: stdout goes to `log`.log, stderr to `log`.err.log.
 /// @throw InputError if the log files cannot be written.
 ChildResult RunChild(const std::vector<std::string>& arguments,
-                     const std::string& log);
+                     const std::string& log, const StopRequest& stop = {});
 
 }  // namespace splitfusion
 

@@ -18,6 +18,8 @@ void Interrupt(int signal) {
 void CatchInterruption() {
   std::signal(SIGINT, Interrupt);
   std::signal(SIGTERM, Interrupt);
+  // Under nohup it stays ignored.
+  if (std::signal(SIGHUP, Interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 bool Interrupted() { return interrupted != 0; }

@@ -3,9 +3,9 @@
 
 namespace splitfusion {
 
-/// From now on the first SIGINT or SIGTERM only sets Interrupted(), so that the
-/// program can finish what it is at and write what it has. A second one ends
-/// it.
+/// From now on the first SIGINT, SIGTERM or SIGHUP (a closed terminal) only
+/// sets Interrupted(), so that the program can finish what it is at and write
+/// what it has. A second one ends it.
 void CatchInterruption();
 
 /// Whether the program was asked to stop.

@@ -1,13 +1,15 @@
 // Runs sf_run and sf_evaluate over many sequences and option files.
 
 #include <gflags/gflags.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "interruption.h"
+#include "progress_line.h"
 #include "splitfusion/pipelines/batch.h"
 #include "tool_main.h"
 
@@ -51,23 +53,26 @@ BatchOptions OptionsFromFlags() {
 
 void PrintProgress(const BatchProgress& progress) {
   const BatchResult& last = progress.last;
-  std::fprintf(stderr, "\r\033[K%d/%d  %s %s: %s", progress.done,
-               progress.total, last.run.sequence.c_str(),
-               last.run.options.c_str(),
-               last.exit_code == 0 ? "done" : "FAILED");
-  if (progress.done == progress.total) {
-    std::fputc('\n', stderr);
-  } else if (progress.seconds_left > 0) {
-    std::fprintf(stderr, "  about %.0f s left", progress.seconds_left);
-  }
+  ShowProgress(progress.done, progress.total,
+               "runs, " + last.run.sequence + " " + last.run.options +
+                   (last.exit_code == 0 ? " done" : " FAILED"),
+               progress.seconds_left);
 }
 
 int Run() {
-  BatchCallback progress;
-  if (isatty(STDERR_FILENO)) progress = PrintProgress;
-  const auto results = RunBatch(OptionsFromFlags(), progress);
-  std::cout << FormatBatchTable(results);
+  CatchInterruption();
+  const BatchOptions options = OptionsFromFlags();
+  const std::size_t planned = PlanBatch(options).size();
+  const auto results = RunBatch(options, PrintProgress, Interrupted);
   const int failed = CountFailed(results);
+  const std::size_t finished = results.size() - failed;
+  if (Interrupted() && finished < planned) EndProgress();
+  std::cout << FormatBatchTable(results);
+  if (Interrupted() && finished < planned) {
+    throw std::runtime_error("interrupted after " + std::to_string(finished) +
+                             " of " + std::to_string(planned) +
+                             " runs; the same command goes on with the batch");
+  }
   if (failed == 0) return kExitDone;
   std::cerr << failed << " of " << results.size() << " runs failed; see "
             << "the *.err.log files in their folders\n";

@@ -30,6 +30,9 @@ echo x >> "$output/../../starts.txt"
 case "$sequence" in
   *bad) echo "warning" >&2; echo "bad/rgb.txt: cannot be opened" >&2; exit 2 ;;
   *crash) kill -SEGV $$ ;;
+  *endless) trap 'echo "interrupted after 4 frames" >&2; exit 1' INT
+            touch "$output/started"
+            while :; do sleep 0.05; done ;;
 esac
 case "$sequence" in
   *cut) echo '{"complete": false, "frames": 4}' > "$output/summary.json"
@@ -209,6 +212,18 @@ TEST_F(BatchTest, ChildKeepsTheLastVersionOfAProgressLine) {
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_EQ(result.last_error_line, "frame 2");
   EXPECT_EQ(RunChild({folder_ / "none"}, folder_ / "none").exit_code, 127);
+}
+
+TEST_F(BatchTest, StopsTheRunningChildAndStartsNoOther) {
+  for (const char* name : {"room", "endless", "desk"}) AddSequence(name);
+  const auto results = RunBatch(
+      options_, {}, [&] { return folder_.Has("out/endless/default/started"); });
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0].exit_code, 0);
+  EXPECT_EQ(results[1].exit_code, 1);
+  EXPECT_EQ(results[1].error, "interrupted after 4 frames");
+  EXPECT_EQ(Starts(), 2u);
+  EXPECT_EQ(nlohmann::json::parse(folder_.Read("out/summary.json")).size(), 2u);
 }
 
 TEST_F(BatchTest, BrokenFilesOfARunGiveNoFigures) {

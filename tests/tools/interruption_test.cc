@@ -1,0 +1,101 @@
+// SIGINT to sf_run and to sf_batch: what was computed is kept.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "support/program.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+constexpr int kFrames = 60;
+
+class Interruption : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* program : {"sf_synth", "sf_run", "sf_batch"}) {
+      if (!HasProgram(program)) GTEST_SKIP() << program << " is not built";
+    }
+    const ProgramResult result = RunProgram(
+        "sf_synth", "--width=160 --height=120 --mesh_every=100 --frames=" +
+                        std::to_string(kFrames) +
+                        " --output=" + (folder_ / "sequence"));
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+  }
+
+  int FramesIn(const std::string& run) const {
+    if (!folder_.Has(run + "/frames.jsonl")) return 0;
+    const std::string lines = folder_.Read(run + "/frames.jsonl");
+    return static_cast<int>(std::count(lines.begin(), lines.end(), '\n'));
+  }
+
+  /// Sends one SIGINT to `program` when the run directory has two frames, and
+  /// waits for its end.
+  ProgramResult Interrupt(RunningProgram* program,
+                          const std::string& run) const {
+    while (program->Runs() && FramesIn(run) < 2) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    program->Send(SIGINT);
+    return program->Wait();
+  }
+
+  /// Expects a run directory that holds what was computed and says that it is
+  /// not all.
+  void ExpectUnfinished(const std::string& run) const {
+    const Json summary = Json::parse(folder_.Read(run + "/summary.json"));
+    EXPECT_EQ(summary["complete"], false);
+    EXPECT_GE(summary["frames"], 2);
+    EXPECT_LT(summary["frames"], kFrames);
+    EXPECT_EQ(summary["frames"], FramesIn(run));
+    EXPECT_TRUE(folder_.Has(run + "/report.html"));
+    EXPECT_TRUE(folder_.Has(run + "/surfaces/000_background/mesh.ply"));
+    EXPECT_TRUE(folder_.Has(run + "/surfaces/001_person/motions.bin"));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Interruption, ARunWritesWhatItHas) {
+  RunningProgram program("sf_run", "--sequence=" + (folder_ / "sequence") +
+                                       " --output=" + (folder_ / "run"));
+  const ProgramResult result = Interrupt(&program, "run");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.errors, HasSubstr("interrupted after "));
+  EXPECT_THAT(result.errors, HasSubstr(" of 60 frames"));
+  ExpectUnfinished("run");
+}
+
+TEST_F(Interruption, ABatchStopsItsRunAndRecordsIt) {
+  const std::string options =
+      folder_.Write("first.flags", "--pictures_every=0\n") + "," +
+      folder_.Write("second.flags", "--pictures_every=0\n");
+  RunningProgram program("sf_batch", "--sequences=" + (folder_ / "sequence") +
+                                         " --options=" + options +
+                                         " --output=" + (folder_ / "out"));
+  const std::string run = "out/sequence/first";
+  const ProgramResult result = Interrupt(&program, run);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.errors, HasSubstr("interrupted after 0 of 2 runs"));
+  ExpectUnfinished(run);
+  const Json batch = Json::parse(folder_.Read("out/summary.json"));
+  ASSERT_EQ(batch.size(), 1u);
+  EXPECT_EQ(batch[0]["options"], "first");
+  EXPECT_EQ(batch[0]["exit_code"], 1);
+  EXPECT_THAT(batch[0]["error"].get<std::string>(),
+              HasSubstr("interrupted after "));
+  EXPECT_FALSE(folder_.Has("out/sequence/second"));
+}
+
+}  // namespace
+}  // namespace splitfusion
