@@ -136,13 +136,15 @@ void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
                            SurfaceReport* report) const {
   DeformationGraph predicted = *graph;
   DeformationGraph stayed = predicted;
+  Rigid3d back = still;
   ApplyRigidMotion(still, &stayed);
   if (Misfit(samples, live, surface, predicted) >
       options_.velocity_gain * Misfit(samples, live, surface, stayed)) {
     predicted = stayed;
+    back = Rigid3d::Identity();
   }
   const bool tracked =
-      TrackFrom(predicted, samples, live, surface, graph, report);
+      TrackFrom(predicted, back, samples, live, surface, graph, report);
   report->state = tracked ? "tracked" : "lost";
   if (!tracked) *graph = predicted;
 }
@@ -173,12 +175,13 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
 }
 
 bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
+                               const Rigid3d& back,
                                const std::vector<ModelSample>& samples,
                                const LiveView& live, std::uint16_t surface,
                                DeformationGraph* graph,
                                SurfaceReport* report) const {
   *graph = start;
-  TrackRigid(samples, live, surface, graph, report);
+  TrackRigid(samples, live, surface, back, graph, report);
   // The turn of a body far away must not count as a way travelled.
   const Eigen::Vector3d pivot = surface == 0 ? Eigen::Vector3d::Zero().eval()
                                              : CentroidOf(samples, start);
@@ -186,7 +189,9 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
   motion.translation() = motion * pivot - pivot;
   report->reason = ReasonForLoss(motion, *report);
   if (report->reason.empty() && !graph->rigid()) {
-    TrackNonRigid(samples, live, surface, graph, report);
+    DeformationGraph before = start;
+    ApplyRigidMotion(back, &before);
+    TrackNonRigid(samples, live, surface, before.motions, graph, report);
     report->reason = ReasonForLoss(motion, *report);
   }
   return report->reason.empty();
@@ -194,10 +199,11 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
 
 void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
                                 const LiveView& live, std::uint16_t surface,
-                                DeformationGraph* graph,
+                                const Rigid3d& back, DeformationGraph* graph,
                                 SurfaceReport* report) const {
   const std::vector<ModelSample> warped = WarpedSamples(samples, *graph);
   DeformationGraph motion = MakeRigidGraph(Rigid3d::Identity());
+  const std::vector<NodeMotion> before = MakeRigidGraph(back).motions;
   for (const TrackingStage& stage : options_.rigid) {
     // A rigid stage of a non-rigid surface only brings it near.
     if (!graph->rigid() && stage.stride < options_.non_rigid.front().stride) {
@@ -206,7 +212,7 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
     const TrackingStage fitted =
         FittedStage(stage, options_.min_samples, samples);
     for (int round = 0; round < stage.rounds; ++round) {
-      if (RunRound(warped, live, surface, fitted, "rigid", 1.0, &motion,
+      if (RunRound(warped, live, surface, fitted, "rigid", 1.0, before, &motion,
                    report)) {
         break;
       }
@@ -217,6 +223,7 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
 
 void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
                                    const LiveView& live, std::uint16_t surface,
+                                   const std::vector<NodeMotion>& before,
                                    DeformationGraph* graph,
                                    SurfaceReport* report) const {
   const int total = TotalRounds(options_.non_rigid);
@@ -228,7 +235,7 @@ void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
       const double progress = total > 1 ? done / (total - 1.0) : 1.0;
       const double factor = std::pow(options_.prior_anneal, 1 - progress);
       const bool settled = RunRound(samples, live, surface, fitted, "non_rigid",
-                                    factor, graph, report);
+                                    factor, before, graph, report);
       if (settled && progress >= 1) return;
     }
   }
@@ -238,6 +245,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
                               const LiveView& live, std::uint16_t surface,
                               const TrackingStage& stage,
                               const std::string& name, double prior_factor,
+                              const std::vector<NodeMotion>& before,
                               DeformationGraph* graph,
                               SurfaceReport* report) const {
   Stopwatch stopwatch;
@@ -253,7 +261,8 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   if (!association.correspondences.empty()) {
     round.solver =
         Minimize({energy_, association.correspondences, live.camera,
-                  prior_factor * MeanConfidence(association.correspondences)},
+                  prior_factor * MeanConfidence(association.correspondences),
+                  &live, &before},
                  solver_, graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

@@ -74,20 +74,24 @@ class SurfaceTracker {
  private:
   double Misfit(const std::vector<ModelSample>& samples, const LiveView& live,
                 std::uint16_t surface, const DeformationGraph& graph) const;
-  bool TrackFrom(const DeformationGraph& start,
+  /// `back`: the rigid motion of the camera frame from `start` to where the
+  /// surface was.
+  bool TrackFrom(const DeformationGraph& start, const Rigid3d& back,
                  const std::vector<ModelSample>& samples, const LiveView& live,
                  std::uint16_t surface, DeformationGraph* graph,
                  SurfaceReport* report) const;
   void TrackRigid(const std::vector<ModelSample>& samples, const LiveView& live,
-                  std::uint16_t surface, DeformationGraph* graph,
-                  SurfaceReport* report) const;
+                  std::uint16_t surface, const Rigid3d& back,
+                  DeformationGraph* graph, SurfaceReport* report) const;
   void TrackNonRigid(const std::vector<ModelSample>& samples,
                      const LiveView& live, std::uint16_t surface,
+                     const std::vector<NodeMotion>& before,
                      DeformationGraph* graph, SurfaceReport* report) const;
   bool RunRound(const std::vector<ModelSample>& samples, const LiveView& live,
                 std::uint16_t surface, const TrackingStage& stage,
                 const std::string& name, double prior_factor,
-                DeformationGraph* graph, SurfaceReport* report) const;
+                const std::vector<NodeMotion>& before, DeformationGraph* graph,
+                SurfaceReport* report) const;
   std::string ReasonForLoss(const Rigid3d& motion,
                             const SurfaceReport& report) const;
 

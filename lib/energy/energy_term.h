@@ -12,12 +12,25 @@
 
 namespace splitfusion {
 
+struct LiveView;
+
 /// What a term may look at: one surface at one association.
 struct EnergyInput {
   const DeformationGraph& graph;  ///< Motions are the linearisation point.
   /// Pairs of model and live points of the surface.
   const std::vector<Correspondence>& correspondences;
   const PinholeCamera& camera;  ///< Live camera.
+  /// The live frame, for terms that look beyond the correspondences; null where
+  /// a problem is solved without one.
+  const LiveView* live = nullptr;
+  /// Where the graph's nodes were in the frame before, one motion a node: their
+  /// last motions as the live camera would see them had the surface stood still
+  /// in the world (of the background: had the camera stood still). In rigid
+  /// rounds one node carries the whole surface from where tracking starts, and
+  /// this is its way back. Of a surface that was lost and found elsewhere in
+  /// this frame: where it was found. Null where a problem is solved without
+  /// history.
+  const std::vector<NodeMotion>* before = nullptr;
 };
 
 /// One term of the energy (SplitFusion Eq. 4).

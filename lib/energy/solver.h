@@ -49,6 +49,10 @@ struct SurfaceProblem {
   const std::vector<Correspondence>& correspondences;
   const PinholeCamera& camera;  ///< Live camera.
   double prior_factor = 1;      ///< Annealing: multiplies the priors' weights.
+  /// For terms that ask for them, see EnergyInput; may be null.
+  const LiveView* live = nullptr;
+  /// As `live`.
+  const std::vector<NodeMotion>* before = nullptr;
 };
 
 /// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7) and

@@ -6,7 +6,8 @@ namespace splitfusion {
 
 std::vector<TermBlocks> CollectBlocks(const SurfaceProblem& problem,
                                       const DeformationGraph& graph) {
-  const EnergyInput input{graph, problem.correspondences, problem.camera};
+  const EnergyInput input{graph, problem.correspondences, problem.camera,
+                          problem.live, problem.before};
   std::vector<TermBlocks> terms;
   for (const WeightedTerm& term : problem.energy) {
     const double factor = term.term->is_prior() ? problem.prior_factor : 1.0;

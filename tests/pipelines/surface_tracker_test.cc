@@ -4,71 +4,11 @@
 
 #include <cmath>
 
-#include "splitfusion/cost_functions/builtin_terms.h"
+#include "pipelines/tracking_scenes.h"
 #include "support/expect_input_error.h"
-#include "support/sample_depth.h"
-#include "support/sample_graphs.h"
-#include "support/sample_meshes.h"
 
 namespace splitfusion {
 namespace {
-
-/// 320x240 pixels.
-PinholeCamera Camera() {
-  PinholeCamera camera = SmallCamera();
-  camera.width *= 2, camera.height *= 2;
-  camera.fx *= 2, camera.fy *= 2, camera.cx *= 2, camera.cy *= 2;
-  return camera;
-}
-
-LiveView View(const cv::Mat_<float>& depth) {
-  return MakeLiveView(Camera(), depth, PlainColor(Camera(), {90, 90, 90}));
-}
-
-/// Depth of three slanted planes that meet like those of a room's corner.
-cv::Mat_<float> CornerDepth(const Rigid3d& camera_from_world) {
-  const std::vector<std::pair<Eigen::Vector3d, double>> planes = {
-      {Eigen::Vector3d(0.2, 0, 1).normalized(), 1.5},
-      {{-0.6, 0, 0.8}, 1.15},
-      {{0, 0.6, 0.8}, 1.1}};
-  cv::Mat_<float> nearest(Camera().height, Camera().width, 9.f);
-  for (const auto& [n, d] : planes) {
-    const Eigen::Vector3d moved = camera_from_world.linear() * n;
-    cv::Mat_<float> depth = PlaneDepth(
-        Camera(), moved, d + moved.dot(camera_from_world.translation()));
-    depth.setTo(9, depth <= 0);
-    nearest = cv::min(nearest, depth);
-  }
-  return nearest;
-}
-
-/// The live points as a model in the camera frame, carried by one node.
-std::vector<ModelSample> SamplesOf(const LiveView& view, int surface = 0) {
-  std::vector<ModelSample> samples;
-  for (int v = 0; v < view.depth.rows; v += 2) {
-    for (int u = 0; u < view.depth.cols; u += 2) {
-      const cv::Vec3f& p = view.map.points(v, u);
-      const cv::Vec3f& n = view.map.normals(v, u);
-      if (n[2] == 0 || view.labels(v, u) != surface) continue;
-      ModelSample sample;
-      sample.point = {p[0], p[1], p[2]};
-      sample.normal = {n[0], n[1], n[2]};
-      sample.u = u, sample.v = v;
-      sample.skinning.count = 1;
-      sample.skinning.weights[0] = 1;
-      samples.push_back(sample);
-    }
-  }
-  return samples;
-}
-
-SurfaceTracker MakeTracker(
-    const TrackerOptions& options = TrackerOptions::Defaults()) {
-  return SurfaceTracker(
-      options, SolverOptions(),
-      ParseEnergy("point_to_plane(loss=tukey,scale=0.03) arap(weight=8)",
-                  BuiltinTerms()));
-}
 
 /// The room's corner, tracked from rest to where the camera has moved.
 struct CornerTracking {
@@ -180,33 +120,21 @@ TEST(SurfaceTracker, DoesNotFollowAPredictionThatFitsWorse) {
 }
 
 TEST(SurfaceTracker, BendsANonRigidSurfaceOntoTheDepth) {
-  // Waves keep the sheet from sliding along itself.
-  const auto waves = [](double x, double y) {
-    return Eigen::Vector3d(x - 0.25, y - 0.2,
-                           1 + 0.03 * std::sin(14 * x) * std::cos(16 * y));
-  };
-  const auto bend = [](const Eigen::Vector3d& p) { return Bend(p, 1, 0.8); };
-  const TriangleMesh rest = SheetMesh(0.5, 0.4, 0.01, waves);
-  DeformationGraph graph = CoverWithNodes(rest, 0.04);
-  const SkinningIndex index(graph, 6);
-  std::vector<ModelSample> samples = SamplesOf(View(MeshDepth(Camera(), rest)));
-  for (ModelSample& s : samples) s.skinning = index.Skin(s.point);
-  const LiveView live = View(
-      MeshDepth(Camera(), SheetMesh(0.5, 0.4, 0.01, [&](double x, double y) {
-                  return bend(waves(x, y));
-                })));
+  BendingSheet sheet;
   SurfaceReport report;
-  MakeTracker().Track(samples, live, 0, Rigid3d::Identity(), &graph, &report);
+  MakeTracker().Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(),
+                      &sheet.graph, &report);
   ASSERT_EQ(report.state, "tracked") << report.reason;
-  const WarpField warp(graph);
+  const WarpField warp(sheet.graph);
   double error = 0, before = 0;
-  for (const ModelSample& s : samples) {
-    const Eigen::Vector3f truth = bend(s.point.cast<double>()).cast<float>();
+  for (const ModelSample& s : sheet.samples) {
+    const Eigen::Vector3f truth =
+        BendingSheet::Bent(s.point.cast<double>()).cast<float>();
     error += (warp.WarpPoint(s.skinning, s.point) - truth).norm();
     before += (s.point - truth).norm();
   }
-  EXPECT_LT(error / samples.size(), 0.004);
-  EXPECT_GT(before / samples.size(), 0.008);
+  EXPECT_LT(error / sheet.samples.size(), 0.004);
+  EXPECT_GT(before / sheet.samples.size(), 0.008);
   double factor = 1e9;
   bool non_rigid = false;
   for (const TrackingRound& round : report.rounds) {

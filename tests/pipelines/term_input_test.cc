@@ -1,0 +1,96 @@
+// Energy terms of one's own that look at the live frame and at the motions of
+// the frame before.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "pipelines/tracking_scenes.h"
+
+namespace splitfusion {
+namespace {
+
+/// Smoothness in time: how far a node has come since the frame before.
+///
+///   r = t + tau - t_before, camera frame, metres
+struct Travel {
+  static constexpr int kResiduals = 3;
+  Eigen::Vector3d travelled;  ///< t - t_before.
+  template <typename T>
+  bool operator()(T const* const* twists, T* residual) const {
+    for (int d = 0; d < 3; ++d) {
+      residual[d] = T(travelled[d]) + twists[0][3 + d];
+    }
+    return true;
+  }
+};
+
+class TravelTerm : public EnergyTerm {
+ public:
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    ASSERT_NE(input.live, nullptr);
+    EXPECT_EQ(input.live->color.cols, input.camera.width);
+    ASSERT_NE(input.before, nullptr);
+    ASSERT_EQ(input.before->size(), input.graph.motions.size());
+    std::vector<std::vector<int>> nodes;
+    std::vector<Travel> functors;
+    for (int i = 0; i < input.graph.size(); ++i) {
+      nodes.push_back({i});
+      functors.push_back({input.graph.motions[i].translation -
+                          (*input.before)[i].translation});
+    }
+    sink->AddNodes(nodes, functors);
+  }
+};
+
+/// A tracker whose energy all but forbids nodes to travel.
+SurfaceTracker MakeSluggishTracker() {
+  TermRegistry terms = BuiltinTerms();
+  terms.Register("travel", [] { return std::make_unique<TravelTerm>(); });
+  return MakeTracker(TrackerOptions::Defaults(), "travel(weight=1e5)", terms);
+}
+
+TEST(TermInput, ATermMayHoldARigidSurfaceWhereItWas) {
+  // The prediction is right; a term of smoothness in time wants it back.
+  const Rigid3d motion = MakeMotion({0, 0, 0}, {0, 0, 0.03});
+  const LiveView live = View(CornerDepth(motion));
+  const std::vector<ModelSample> samples =
+      SamplesOf(View(CornerDepth(Rigid3d::Identity())));
+  const auto moved = [&](const SurfaceTracker& tracker) {
+    DeformationGraph graph = MakeRigidGraph(motion);
+    SurfaceReport report;
+    tracker.Track(samples, live, 0, motion.inverse(), &graph, &report);
+    EXPECT_EQ(report.state, "tracked") << report.reason;
+    return graph.motions[0].translation.norm();
+  };
+  EXPECT_NEAR(moved(MakeTracker()), 0.03, 0.001);
+  // Not 0: the term leaves turns free.
+  EXPECT_LT(moved(MakeSluggishTracker()), 0.003);
+}
+
+TEST(TermInput, ATermMayHoldTheNodesWhereTheyWere) {
+  const auto farthest = [](const SurfaceTracker& tracker) {
+    BendingSheet sheet;
+    const Rigid3d motion = MakeMotion({0, 0, 0}, {0, 0.004, 0});
+    const DeformationGraph rest = sheet.graph;
+    ApplyRigidMotion(motion, &sheet.graph);  // The prediction.
+    SurfaceReport report;
+    tracker.Track(sheet.samples, sheet.live, 0, motion.inverse(), &sheet.graph,
+                  &report);
+    EXPECT_EQ(report.state, "tracked") << report.reason;
+    double distance = 0;
+    for (int i = 0; i < rest.size(); ++i) {
+      distance = std::max(distance, (sheet.graph.motions[i].translation -
+                                     rest.motions[i].translation)
+                                        .norm());
+    }
+    return distance;
+  };
+  EXPECT_GT(farthest(MakeTracker()), 0.02);
+  EXPECT_LT(farthest(MakeSluggishTracker()), 0.001);
+}
+
+}  // namespace
+}  // namespace splitfusion
