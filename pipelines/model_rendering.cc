@@ -77,6 +77,18 @@ ModelGrey SmoothGrey(const cv::Mat_<cv::Vec3b>& color, const cv::Mat& mask,
 
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
+/// Pixels of `camera` that a surface covers, counted on every fourth.
+int CountPixels(const std::vector<Eigen::Vector3f>& vertices,
+                const Surface& surface, const PinholeCamera& camera) {
+  constexpr int kStride = 4;
+  const PinholeCamera coarse = camera.Subsampled(kStride);
+  Raster raster;
+  raster.Clear(coarse);
+  RasterizeTriangles(vertices, surface.mesh().triangles, coarse,
+                     /*cull_back_faces=*/true, 0, &raster);
+  return cv::countNonZero(raster.depth > 0) * kStride * kStride;
+}
+
 MeshRendering Render(const std::vector<const Surface*>& surfaces,
                      const PinholeCamera& camera) {
   MeshRendering rendering;
@@ -85,9 +97,11 @@ MeshRendering Render(const std::vector<const Surface*>& surfaces,
   int first = 0;
   for (const Surface* surface : surfaces) {
     rendering.first_triangle[surface->id()] = first;
-    RasterizeTriangles(surface->WarpedVertices(), surface->mesh().triangles,
-                       camera, /*cull_back_faces=*/true, first,
-                       &rendering.raster);
+    const std::vector<Eigen::Vector3f> vertices = surface->WarpedVertices();
+    RasterizeTriangles(vertices, surface->mesh().triangles, camera,
+                       /*cull_back_faces=*/true, first, &rendering.raster);
+    rendering.unoccluded[surface->id()] =
+        CountPixels(vertices, *surface, camera);
     first += static_cast<int>(surface->mesh().triangles.size());
   }
   if (first > 0) {

@@ -28,6 +28,9 @@ struct MeshRendering {
   /// noise of a young model that the TSDF's gradient still has.
   cv::Mat_<cv::Vec3f> normals;
   std::map<int, int> first_triangle;  ///< Surface id -> its first index.
+  /// Surface id -> pixels of the rendering that it would have if no other
+  /// surface hid it.
+  std::map<int, int> unoccluded;
 };
 
 /// Renders the meshes under the current motions.

@@ -63,6 +63,10 @@ void PipelineOptions::Check() const {
   CheckOption(max_lost_young >= 1, "max_lost_young", max_lost_young, ">= 1");
   CheckOption(min_tracked_pixels >= 1, "min_tracked_pixels", min_tracked_pixels,
               ">= 1");
+  CheckOption(min_exposure >= 0 && min_exposure <= 1, "min_exposure",
+              min_exposure, "0..1");
+  CheckOption(back_exposure >= min_exposure && back_exposure <= 1,
+              "back_exposure", back_exposure, "min_exposure..1");
 }
 
 SplitFusion::SplitFusion(const PinholeCamera& camera,
@@ -103,12 +107,13 @@ FrameReport SplitFusion::ProcessFrame(const Frame& frame) {
 void SplitFusion::PredictMotions() {
   if (surfaces_.empty()) return;
   const Rigid3d world_from_camera = WorldFromCamera();
-  const Rigid3d camera_motion = velocities_.at(0);
+  const Rigid3d camera_motion = predictors_.at(0).velocity();
   const Rigid3d camera_from_world = camera_motion * world_from_camera.inverse();
   for (const auto& [id, surface] : surfaces_) {
-    const Rigid3d motion =
-        id == 0 ? camera_motion
-                : camera_from_world * velocities_.at(id) * world_from_camera;
+    const Rigid3d motion = id == 0 ? camera_motion
+                                   : camera_from_world *
+                                         predictors_.at(id).velocity() *
+                                         world_from_camera;
     ApplyRigidMotion(motion, surface->mutable_graph());
   }
 }
@@ -152,7 +157,7 @@ void SplitFusion::TrackBackground(FrameReport* report) {
           : VisibleSamples(rendering_, background, options_.render_stride);
   surface.render_seconds = stopwatch.Restart();
   const Rigid3d predicted = MeanRigidMotion(background.graph());
-  tracker_.Track(samples, live_, 0, velocities_.at(0).inverse(),
+  tracker_.Track(samples, live_, 0, predictors_.at(0).velocity().inverse(),
                  background.mutable_graph(), &surface);
   // A camera motion moves every surface.
   const Rigid3d correction =
@@ -173,7 +178,10 @@ void SplitFusion::TrackObjects(FrameReport* report) {
     surface_report.pixels = seen == pixels.end() ? 0 : seen->second;
     if (surface_report.pixels < options_.min_tracked_pixels) {
       surface_report.state = "unseen";
+    } else if (IsHidden(&surface_report)) {
+      surface_report.state = "hidden";
     } else {
+      if (hidden_.erase(id) > 0) PlaceWhereSeen(surface.get(), &surface_report);
       TrackObject(surface.get(), &surface_report);
       if (surface_report.state == "lost") {
         Reacquire(surface.get(), &surface_report);
@@ -183,6 +191,37 @@ void SplitFusion::TrackObjects(FrameReport* report) {
   }
 }
 
+bool SplitFusion::IsHidden(SurfaceReport* report) {
+  const auto drawn = rendering_.unoccluded.find(report->id);
+  if (drawn == rendering_.unoccluded.end() || drawn->second == 0) return false;
+  const double exposure =
+      report->pixels / (static_cast<double>(drawn->second) *
+                        options_.render_stride * options_.render_stride);
+  const bool was_hidden = hidden_.count(report->id) > 0;
+  if (exposure >=
+      (was_hidden ? options_.back_exposure : options_.min_exposure)) {
+    return false;
+  }
+  hidden_.insert(report->id);
+  report->reason = std::to_string(static_cast<int>(100 * exposure)) +
+                   " % of the model in view";
+  return true;
+}
+
+bool SplitFusion::PlaceWhereSeen(Surface* surface, SurfaceReport* report) {
+  const Stopwatch stopwatch;
+  const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
+  const std::optional<Rigid3d> shift =
+      FindImageShift(RenderAlone(*surface, camera).raster.depth, live_,
+                     static_cast<std::uint16_t>(surface->id()));
+  if (shift) {
+    ApplyRigidMotion(*shift, surface->mutable_graph());
+    rendering_ = RenderMeshes(surfaces_, camera);
+  }
+  report->render_seconds += stopwatch.Seconds();
+  return shift.has_value();
+}
+
 void SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
   Stopwatch stopwatch;
   const std::vector<ModelSample> samples =
@@ -190,26 +229,16 @@ void SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
   report->render_seconds += stopwatch.Restart();
   const Rigid3d world_from_camera = WorldFromCamera();
   const Rigid3d still = world_from_camera.inverse() *
-                        velocities_.at(surface->id()).inverse() *
+                        predictors_.at(surface->id()).velocity().inverse() *
                         world_from_camera;
   tracker_.Track(samples, live_, static_cast<std::uint16_t>(surface->id()),
                  still, surface->mutable_graph(), report);
 }
 
 void SplitFusion::Reacquire(Surface* surface, SurfaceReport* report) {
-  Stopwatch stopwatch;
-  const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
-  const auto id = static_cast<std::uint16_t>(surface->id());
-  const std::optional<Rigid3d> shift =
-      FindImageShift(RenderAlone(*surface, camera).raster.depth, live_, id);
-  if (!shift) return;
   const DeformationGraph before = surface->graph();
-  ApplyRigidMotion(*shift, surface->mutable_graph());
-  const std::vector<ModelSample> samples = VisibleSamples(
-      RenderAlone(*surface, camera), *surface, options_.render_stride);
-  report->render_seconds += stopwatch.Restart();
-  tracker_.Track(samples, live_, id, Rigid3d::Identity(),
-                 surface->mutable_graph(), report);
+  if (!PlaceWhereSeen(surface, report)) return;
+  TrackObject(surface, report);
   if (report->state == "lost") *surface->mutable_graph() = before;
 }
 
@@ -248,8 +277,8 @@ void SplitFusion::Drop(int id, const std::string& state,
   report->kind = surfaces_.at(id)->kind();
   report->state = state;
   surfaces_.erase(id);
-  velocities_.erase(id);
-  last_world_from_canonical_.erase(id);
+  predictors_.erase(id);
+  hidden_.erase(id);
 }
 
 void SplitFusion::FollowInstances(FrameReport* report) {
@@ -320,11 +349,10 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
                           tracked || surface_report.state == "born");
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
-    const auto last = last_world_from_canonical_.find(id);
-    velocities_[id] = tracked && last != last_world_from_canonical_.end()
-                          ? placed * last->second.inverse()
-                          : Rigid3d::Identity();
-    last_world_from_canonical_[id] = placed;
+    predictors_[id].Record(placed, Center(surface.graph()),
+                           tracked                  ? Placement::kTracked
+                           : hidden_.count(id) != 0 ? Placement::kHidden
+                                                    : Placement::kNotTracked);
     report->render_seconds += surface_report.render_seconds;
     report->associate_seconds += surface_report.associate_seconds;
     report->solve_seconds += surface_report.solve_seconds;

@@ -2,6 +2,7 @@
 #define SPLITFUSION_PIPELINES_SPLIT_FUSION_H_
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/split/surface_splitter.h"
 #include "splitfusion/pipelines/model_rendering.h"
+#include "splitfusion/pipelines/motion_predictor.h"
 #include "splitfusion/pipelines/surface.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
@@ -40,6 +42,11 @@ struct PipelineOptions {
   bool deform_objects = true;  ///< False: moving things are rigid.
   bool deform_background = false;  ///< True: surface 0 is non-rigid.
   int min_tracked_pixels = 400;    ///< Fewer live pixels: surface is unseen.
+  /// A surface of whose model less is in view, of what other surfaces could
+  /// hide, is carried on as predicted, neither tracked nor fused ...
+  double min_exposure = 0.25;
+  /// ... until this much is in view.
+  double back_exposure = 0.4;
   /// Fraction of the image a surface has to cover before it is modelled.
   double min_birth_area = 0.008;
   /// A surface that is lost in as many frames on end, with no more frames
@@ -85,6 +92,12 @@ class SplitFusion {
   void Split(const Frame& frame, FrameReport* report);
   void TrackBackground(FrameReport* report);
   void TrackObjects(FrameReport* report);
+  /// Whether so little of a surface is in view that its motion would be that
+  /// of a strip.
+  bool IsHidden(SurfaceReport* report);
+  /// Shifts a surface to where its live pixels are; whether such a place is
+  /// found.
+  bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
   void TrackObject(Surface* surface, SurfaceReport* report);
   /// Tries a lost surface again from where its live pixels are.
   void Reacquire(Surface* surface, SurfaceReport* report);
@@ -106,10 +119,9 @@ class SplitFusion {
   LiveView live_;
   MeshRendering rendering_;
   ModelMap background_map_;
-  /// Rigid motion of every surface over the last frame, in world (camera for
-  /// the background): the constant-velocity prediction.
-  std::map<int, Rigid3d> velocities_;
-  std::map<int, Rigid3d> last_world_from_canonical_;
+  /// By surface; of the background in the camera frame, of others in world.
+  std::map<int, MotionPredictor> predictors_;
+  std::set<int> hidden_;            ///< Surfaces that are mostly occluded.
   std::map<int, int> lost_on_end_;  ///< Frames, by surface.
 };
 

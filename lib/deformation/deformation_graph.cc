@@ -39,4 +39,10 @@ Rigid3d MeanRigidMotion(const DeformationGraph& graph) {
   return motion;
 }
 
+Eigen::Vector3d Center(const DeformationGraph& graph) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& position : graph.positions) sum += position;
+  return graph.positions.empty() ? sum : sum / graph.size();
+}
+
 }  // namespace splitfusion

@@ -51,6 +51,10 @@ void ApplyRigidMotion(const Rigid3d& motion, DeformationGraph* graph);
 /// over the node positions); camera from canonical.
 Rigid3d MeanRigidMotion(const DeformationGraph& graph);
 
+/// Mean of the node positions, canonical frame, metres; the origin if there is
+/// no node.
+Eigen::Vector3d Center(const DeformationGraph& graph);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_DEFORMATION_DEFORMATION_GRAPH_H_
