@@ -70,7 +70,7 @@ PooledView PoolView(const Json& instance) {
 }
 
 void ReadObjects(const Json& evaluation, BatchFigures* figures) {
-  std::vector<double> view, near, uncovered, accuracy;
+  std::vector<double> view, near, uncovered, accuracy, f_score;
   const Json instances = evaluation.is_object()
                              ? evaluation.value("instances", Json::array())
                              : Json::array();
@@ -80,11 +80,13 @@ void ReadObjects(const Json& evaluation, BatchFigures* figures) {
     near.push_back(pool.near / pool.pixels);
     uncovered.push_back(1 - pool.covered / pool.pixels);
     accuracy.push_back(Figure(item, "/surface/accuracy/mean"));
+    f_score.push_back(Figure(item, "/surface/f_score/0.02"));
   }
   figures->objects_view_m = MeanFigure(view);
   figures->objects_right = MeanFigure(near);
   figures->objects_uncovered = MeanFigure(uncovered);
   figures->objects_accuracy_m = MeanFigure(accuracy);
+  figures->objects_f_score = MeanFigure(f_score);
 }
 
 void ReadErrors(const Json& evaluation, BatchFigures* figures) {

@@ -32,6 +32,8 @@ struct BatchFigures {
   double objects_uncovered = kNone;
   /// Mean distance of an instance's mesh to the true one, metres.
   double objects_accuracy_m = kNone;
+  /// F-score of an instance's mesh at 20 mm, over the same frames.
+  double objects_f_score = kNone;
   double track_median_m = kNone;     ///< Of visible surface points, metres.
   double track_mean_m = kNone;       ///< Of visible surface points, metres.
   double seconds_median = kNone;     ///< Per frame.
@@ -56,6 +58,7 @@ inline constexpr std::array<BatchColumn, 14> kBatchColumns = {{
     {"objects_right", &BatchFigures::objects_right},
     {"objects_uncovered", &BatchFigures::objects_uncovered},
     {"objects_accuracy_m", &BatchFigures::objects_accuracy_m},
+    {"objects_f_score", &BatchFigures::objects_f_score},
     {"track_median_m", &BatchFigures::track_median_m},
     {"track_mean_m", &BatchFigures::track_mean_m},
     {"seconds_median", &BatchFigures::seconds_median},

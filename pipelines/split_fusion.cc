@@ -32,43 +32,6 @@ bool AllDrawn(const SurfaceMap& surfaces, const MeshRendering& rendering) {
 
 }  // namespace
 
-PipelineOptions::PipelineOptions() {
-  background.tsdf.voxel_size = 0.010;
-  background.tsdf.truncation = 0.040;
-  object.tsdf.voxel_size = 0.005;
-  object.tsdf.truncation = 0.030;
-  object.min_piece_area = 0.0025;
-  object.tsdf.max_free_weight = 3;
-}
-
-void PipelineOptions::Check() const {
-  split.Check();
-  background.Check();
-  object.Check();
-  tracker.Check();
-  solver.Check();
-  ray_cast.Check();
-  CheckOption(render_stride >= 1 && render_stride <= 8, "render_stride",
-              render_stride, "1..8 pixels");
-  for (const auto* stages : {&tracker.rigid, &tracker.non_rigid}) {
-    for (const TrackingStage& stage : *stages) {
-      CheckOption(stage.stride % render_stride == 0, "render_stride",
-                  render_stride,
-                  "a divisor of the stride of every tracking stage (" +
-                      std::to_string(stage.stride) + ")");
-    }
-  }
-  CheckOption(min_birth_area >= 0 && min_birth_area < 1, "min_birth_area",
-              min_birth_area, "a fraction of the image");
-  CheckOption(max_lost_young >= 1, "max_lost_young", max_lost_young, ">= 1");
-  CheckOption(min_tracked_pixels >= 1, "min_tracked_pixels", min_tracked_pixels,
-              ">= 1");
-  CheckOption(min_exposure >= 0 && min_exposure <= 1, "min_exposure",
-              min_exposure, "0..1");
-  CheckOption(back_exposure >= min_exposure && back_exposure <= 1,
-              "back_exposure", back_exposure, "min_exposure..1");
-}
-
 SplitFusion::SplitFusion(const PinholeCamera& camera,
                          const PipelineOptions& options,
                          const LabelTable& labels,
@@ -176,10 +139,10 @@ void SplitFusion::TrackObjects(FrameReport* report) {
     surface_report.id = id;
     const auto seen = pixels.find(id);
     surface_report.pixels = seen == pixels.end() ? 0 : seen->second;
-    if (surface_report.pixels < options_.min_tracked_pixels) {
-      surface_report.state = "unseen";
-    } else if (IsHidden(&surface_report)) {
+    if (IsHidden(&surface_report)) {
       surface_report.state = "hidden";
+    } else if (surface_report.pixels < options_.min_tracked_pixels) {
+      surface_report.state = "unseen";
     } else {
       if (hidden_.erase(id) > 0) PlaceWhereSeen(surface.get(), &surface_report);
       TrackObject(surface.get(), &surface_report);
@@ -198,10 +161,9 @@ bool SplitFusion::IsHidden(SurfaceReport* report) {
       report->pixels / (static_cast<double>(drawn->second) *
                         options_.render_stride * options_.render_stride);
   const bool was_hidden = hidden_.count(report->id) > 0;
-  if (exposure >=
-      (was_hidden ? options_.back_exposure : options_.min_exposure)) {
+  constexpr double kBack = 1.6;  // More must be seen to come back.
+  if (exposure >= (was_hidden ? kBack : 1) * options_.min_exposure)
     return false;
-  }
   hidden_.insert(report->id);
   report->reason = std::to_string(static_cast<int>(100 * exposure)) +
                    " % of the model in view";
@@ -349,10 +311,11 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
                           tracked || surface_report.state == "born");
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
+    const bool hidden = hidden_.count(id) > 0 && !surface.dormant();
     predictors_[id].Record(placed, Center(surface.graph()),
-                           tracked                  ? Placement::kTracked
-                           : hidden_.count(id) != 0 ? Placement::kHidden
-                                                    : Placement::kNotTracked);
+                           tracked  ? Placement::kTracked
+                           : hidden ? Placement::kHidden
+                                    : Placement::kNotTracked);
     report->render_seconds += surface_report.render_seconds;
     report->associate_seconds += surface_report.associate_seconds;
     report->solve_seconds += surface_report.solve_seconds;

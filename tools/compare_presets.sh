@@ -66,8 +66,8 @@ print_table() {
       for (i = 1; i <= NF; ++i) from_end[$i] = NF - i
       print "| sequence | preset | ATE | background: error | complete |" \
             " moving: right | view error | missing | surface error |" \
-            " track error, median | mean |"
-      print "|---|---|---|---|---|---|---|---|---|---|---|"
+            " F-score | track error, median | mean |"
+      print "|---|---|---|---|---|---|---|---|---|---|---|---|"
       next
     }
     {
@@ -77,6 +77,7 @@ print_table() {
             " | " percent("objects_right") " | " mm("objects_view_m") \
             " | " percent("objects_uncovered") \
             " | " mm("objects_accuracy_m") \
+            " | " percent("objects_f_score") \
             " | " mm("track_median_m") " | " mm("track_mean_m") " |"
     }' "$output/summary.csv"
 }

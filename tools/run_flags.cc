@@ -72,6 +72,9 @@ DEFINE_double(background_min_piece, 0.01,
 DEFINE_double(object_min_piece, 0.0025,
               "Smaller pieces of other surfaces' final meshes are left out, "
               "m^2.");
+DEFINE_double(min_exposure, 0.25,
+              "Surfaces are carried on, not tracked, while less of them is in "
+              "view beside others; 0 = never.");
 DEFINE_int32(render_stride, 2, "Model maps hold every n-th pixel.");
 
 namespace splitfusion {
@@ -195,6 +198,7 @@ PipelineOptions PipelineOptionsFromFlags() {
   options.split.rigid_objects = FLAGS_rigid_objects;
   options.terms = FLAGS_terms;
   options.render_stride = FLAGS_render_stride;
+  options.min_exposure = FLAGS_min_exposure;
   SetGates(&options.tracker);
   SetSolver(&options.solver);
   SetModel(&options);

@@ -26,11 +26,12 @@ struct SurfaceReport {
   std::string label;                       ///< Class name.
   SurfaceKind kind = SurfaceKind::kRigid;  ///< How it is tracked.
   /// "tracked", "born", "lost" (a frame that failed; motion kept, nothing
-  /// fused), "unseen" (not in view), "dropped" (a young surface that was lost
-  /// too often and begins anew) or "merged" (it turned out to be a part of
-  /// another surface).
+  /// fused), "hidden" (mostly behind other surfaces; carried on as predicted,
+  /// nothing fused), "unseen" (not in view), "dropped" (a young surface that
+  /// was lost too often and begins anew) or "merged" (it turned out to be a
+  /// part of another surface).
   std::string state;
-  std::string reason;       ///< Why lost; empty otherwise.
+  std::string reason;       ///< Why lost or hidden; empty otherwise.
   int pixels = 0;           ///< Live pixels with depth of this surface.
   int nodes = 0;            ///< Of the deformation graph.
   double node_spacing = 0;  ///< Of the graph, metres; 0 if it is rigid.

@@ -23,7 +23,8 @@ Json ToJson(const SurfaceSummary& surface) {
           {"nodes", surface.nodes},
           {"node_spacing", surface.node_spacing},
           {"vertices", surface.vertices},
-          {"lost", surface.lost}};
+          {"lost", surface.lost},
+          {"hidden", surface.hidden}};
 }
 
 Json SecondsPerFrame(const RunSummary& summary) {
@@ -72,6 +73,7 @@ void SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   surface.kind = report.kind;
   if (report.state == "tracked" || report.state == "born") ++surface.frames;
   if (report.state == "lost") surface.lost.push_back(frame);
+  if (report.state == "hidden") surface.hidden.push_back(frame);
   if (report.nodes > 0) {
     surface.nodes = report.nodes;
     surface.node_spacing = report.node_spacing;

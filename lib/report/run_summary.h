@@ -24,6 +24,7 @@ struct SurfaceSummary {
   double node_spacing = 0;  ///< Of the final graph, metres; 0 if rigid.
   int vertices = 0;         ///< Of the final mesh.
   std::vector<int> lost;    ///< Frames whose solve failed.
+  std::vector<int> hidden;  ///< Frames in which others mostly hid it.
 };
 
 /// What `summary.json` holds.

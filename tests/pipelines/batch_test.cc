@@ -242,7 +242,8 @@ TEST_F(BatchTest, ErrorsAreMeansOverTheInstancesThatHaveThem) {
                    "completeness": {"mean": 0.125, "within": {"0.02": 0.75}}},
     "tracks": {"visible": {"median": 0.0625, "mean": 0.375}},
     "instances": [
-      {"surface": {"accuracy": {"mean": 0.5}}, "frames": [
+      {"surface": {"accuracy": {"mean": 0.5}, "f_score": {"0.02": 0.875}},
+       "frames": [
         {"view": {"pixels": 100, "distances":
           {"count": 50, "mean": 0.25, "within": {"0.02": 1}}}},
         {"view": null},
@@ -259,6 +260,7 @@ TEST_F(BatchTest, ErrorsAreMeansOverTheInstancesThatHaveThem) {
   EXPECT_EQ(figures.objects_right, 0.15625);  // (125 / 400 + 0) / 2.
   EXPECT_EQ(figures.objects_uncovered, 0.75);
   EXPECT_EQ(figures.objects_accuracy_m, 0.5);
+  EXPECT_EQ(figures.objects_f_score, 0.875);
   EXPECT_EQ(figures.track_median_m, 0.0625);
   EXPECT_EQ(figures.track_mean_m, 0.375);
 }

@@ -46,8 +46,8 @@ double PoseError(const SyntheticRun& run, const SplitFusion& fusion) {
 }
 
 void ExpectSoundReport(const FrameReport& report) {
-  const std::set<std::string> states = {"tracked", "born",    "lost",
-                                        "unseen",  "dropped", "merged"};
+  const std::set<std::string> states = {"tracked", "born",   "lost",  "unseen",
+                                        "dropped", "merged", "hidden"};
   double parts = report.segment_seconds + report.split_seconds +
                  report.render_seconds + report.associate_seconds +
                  report.solve_seconds + report.fuse_seconds +
@@ -175,6 +175,52 @@ TEST(SplitFusion, APersonWhoJumpsIsFoundWhereHisPixelsAre) {
           .translation() -
       before;
   EXPECT_GT(way.x(), 0.06);
+}
+
+/// A board before all of a person but a strip of his left side.
+void HideBehindBoard(Frame* frame, std::vector<InstanceMask>* detections) {
+  for (InstanceMask& detection : *detections) {
+    if (detection.class_name != "person") continue;
+    cv::Rect box = cv::boundingRect(detection.mask);
+    box.x += box.width / 6;
+    const cv::Rect image(0, 0, frame->depth.cols, frame->depth.rows);
+    const cv::Rect board = cv::Rect(box.x, 0, box.width, image.height) & image;
+    frame->depth(board).setTo(0.7f);
+    frame->color(board).setTo(cv::Scalar(40, 160, 160));
+    detection.mask(board).setTo(0);
+    InstanceMask occluder = detection;
+    occluder.class_name = "dog";
+    occluder.mask = cv::Mat::zeros(image.size(), detection.mask.type());
+    occluder.mask(board).setTo(255);
+    detections->push_back(occluder);
+    return;
+  }
+}
+
+TEST(SplitFusion, AMostlyHiddenPersonIsCarriedOnAndComesBack) {
+  SyntheticOptions scene = SyntheticRun::Quick();
+  scene.width = 320, scene.height = 240;
+  SyntheticRun run(scene);
+  for (int i = 0; i < 6; ++i) run.Next();
+  const int person = PersonId(run.fusion());
+  const std::size_t vertices =
+      run.fusion().surfaces().at(person)->mesh().vertices.size();
+  for (int i = 0; i < 4; ++i) {
+    const FrameReport report = run.Next(HideBehindBoard);
+    ExpectSoundReport(report);
+    EXPECT_EQ(StateOf(report, person), "hidden");
+    EXPECT_NE(Find(report, person)->reason.find("in view"), std::string::npos);
+    const Surface& surface = *run.fusion().surfaces().at(person);
+    EXPECT_FALSE(surface.history().frames.back().tracked);
+    EXPECT_EQ(surface.mesh().vertices.size(), vertices);
+  }
+  const FrameReport back = run.Next();
+  EXPECT_EQ(StateOf(back, person), "tracked") << Find(back, person)->reason;
+  run.Next();
+  EXPECT_LT(run.MedianDepthError(person), 0.01);
+  const std::size_t grown =
+      run.fusion().surfaces().at(person)->mesh().vertices.size();
+  EXPECT_LT(grown, 1.3 * vertices);
 }
 
 TEST(SplitFusion, BeginsWithTheFirstFrameThatHasDepth) {

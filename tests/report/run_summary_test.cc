@@ -38,7 +38,7 @@ TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
     SurfaceReport& person = report.surfaces[1];
     if (frame == 1) person.state = "born";
     if (frame == 3) person.state = "lost";
-    if (frame == 4) person.state = "unseen";
+    if (frame == 4) person.state = "hidden";
     person.vertices = 100 * frame;
     if (frame == 0) report.surfaces.pop_back();
     builder.Add(report);
@@ -52,6 +52,7 @@ TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
   EXPECT_EQ(person.frames, 2);
   EXPECT_EQ(person.vertices, 400);
   EXPECT_EQ(person.lost, std::vector<int>{3});
+  EXPECT_EQ(person.hidden, std::vector<int>{4});
 }
 
 TEST(SummaryBuilder, TakesTheSpacingOfTheLastGraph) {

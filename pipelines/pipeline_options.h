@@ -1,0 +1,54 @@
+#ifndef SPLITFUSION_PIPELINES_PIPELINE_OPTIONS_H_
+#define SPLITFUSION_PIPELINES_PIPELINE_OPTIONS_H_
+
+#include <string>
+
+#include "splitfusion/lib/energy/solver.h"
+#include "splitfusion/lib/render/ray_caster.h"
+#include "splitfusion/lib/split/surface_splitter.h"
+#include "splitfusion/pipelines/surface.h"
+#include "splitfusion/pipelines/surface_tracker.h"
+
+namespace splitfusion {
+
+/// Options of the whole method. Every one is a flag of `sf_run`.
+struct PipelineOptions {
+  /// Detections to surfaces.
+  SplitOptions split;
+  /// Model of the background.
+  SurfaceOptions background;
+  /// Model of every other surface.
+  SurfaceOptions object;
+  /// Stages, gates and bounds of tracking.
+  TrackerOptions tracker = TrackerOptions::Defaults();
+  /// Minimiser.
+  SolverOptions solver;
+  /// Ray casting of the background.
+  RayCastOptions ray_cast;
+  /// Eq. 4; syntax of ParseEnergy.
+  std::string terms =
+      "point_to_plane(weight=1,loss=tukey,scale=0.03) "
+      "color(weight=8,loss=huber,scale=0.01) arap(weight=8)";
+  int render_stride = 2;       ///< Model maps hold every n-th pixel.
+  bool split_scene = true;     ///< False: one surface holds the whole scene.
+  bool model_objects = true;   ///< False: moving things are only cut out.
+  bool deform_objects = true;  ///< False: moving things are rigid.
+  bool deform_background = false;  ///< True: surface 0 is non-rigid.
+  int min_tracked_pixels = 400;    ///< Fewer live pixels: surface is unseen.
+  /// A surface of whose model less is in view, of what other surfaces could
+  /// hide, is carried on as predicted, neither tracked nor fused; 0 = never.
+  double min_exposure = 0.25;
+  /// Fraction of the image a surface has to cover before it is modelled.
+  double min_birth_area = 0.008;
+  /// A surface that is lost in as many frames on end, with no more frames
+  /// tracked than that, begins anew.
+  int max_lost_young = 5;
+
+  PipelineOptions();
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_PIPELINE_OPTIONS_H_

@@ -1,0 +1,60 @@
+#include "splitfusion/pipelines/motion_predictor.h"
+
+#include <gtest/gtest.h>
+
+namespace splitfusion {
+namespace {
+
+Rigid3d At(double x, double degrees = 0) {
+  Rigid3d pose = Rigid3d::Identity();
+  pose.linear() =
+      Eigen::AngleAxisd(degrees * M_PI / 180, Eigen::Vector3d::UnitY())
+          .toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(x, 0, 2);
+  return pose;
+}
+
+TEST(MotionPredictor, KeepsTheVelocityOfTheLastFrame) {
+  MotionPredictor predictor;
+  EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kTracked);
+  EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
+  predictor.Record(At(0.1, 5), Eigen::Vector3d::Zero(), Placement::kTracked);
+  EXPECT_TRUE((predictor.velocity() * At(0)).isApprox(At(0.1, 5), 1e-12));
+  predictor.Record(At(0.1, 5), Eigen::Vector3d::Zero(), Placement::kNotTracked);
+  EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
+}
+
+TEST(MotionPredictor, CarriesHiddenSurfacesOnByTheUsualStepOfTheirCenter) {
+  MotionPredictor predictor;
+  const Eigen::Vector3d center(0.3, 0, 0);
+  double x = 0;
+  for (int i = 0; i < 9; ++i) {
+    predictor.Record(At(x += 0.02), center, Placement::kTracked);
+  }
+  // The last step before it vanishes is wrong, and so is its turn.
+  predictor.Record(At(x += 0.5, 40), center, Placement::kTracked);
+  for (int i = 0; i < 5; ++i) {
+    predictor.Record(At(x, 40), center, Placement::kHidden);
+    EXPECT_TRUE(predictor.velocity().linear().isIdentity(1e-12));
+    EXPECT_TRUE(predictor.velocity().translation().isApprox(
+        Eigen::Vector3d(0.02, 0, 0), 1e-9));
+  }
+}
+
+TEST(MotionPredictor, TheJumpOfASurfaceThatIsBackIsNoVelocity) {
+  MotionPredictor predictor;
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kTracked);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kHidden);
+  EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
+  predictor.Record(At(0.4), Eigen::Vector3d::Zero(), Placement::kTracked);
+  EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
+  predictor.Record(At(0.41), Eigen::Vector3d::Zero(), Placement::kTracked);
+  EXPECT_NEAR(predictor.velocity().translation().x(), 0.01, 1e-12);
+  // Neither is it a usual step.
+  predictor.Record(At(0.41), Eigen::Vector3d::Zero(), Placement::kHidden);
+  EXPECT_NEAR(predictor.velocity().translation().x(), 0.01, 1e-12);
+}
+
+}  // namespace
+}  // namespace splitfusion
