@@ -48,7 +48,7 @@ struct BatchColumn {
 };
 
 /// The figures in the order of the files.
-inline constexpr std::array<BatchColumn, 14> kBatchColumns = {{
+inline constexpr std::array<BatchColumn, 15> kBatchColumns = {{
     {"frames", &BatchFigures::frames},
     {"lost_frames", &BatchFigures::lost_frames},
     {"ate_rmse_m", &BatchFigures::ate_rmse_m},

@@ -161,7 +161,7 @@ bool SplitFusion::IsHidden(SurfaceReport* report) {
       report->pixels / (static_cast<double>(drawn->second) *
                         options_.render_stride * options_.render_stride);
   const bool was_hidden = hidden_.count(report->id) > 0;
-  constexpr double kBack = 1.6;  // More must be seen to come back.
+  constexpr double kBack = 1.2;  // More must be seen to come back.
   if (exposure >= (was_hidden ? kBack : 1) * options_.min_exposure)
     return false;
   hidden_.insert(report->id);
