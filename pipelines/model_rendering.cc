@@ -77,16 +77,15 @@ ModelGrey SmoothGrey(const cv::Mat_<cv::Vec3b>& color, const cv::Mat& mask,
 
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Pixels of `camera` that a surface covers, counted on every fourth.
-int CountPixels(const std::vector<Eigen::Vector3f>& vertices,
-                const Surface& surface, const PinholeCamera& camera) {
-  constexpr int kStride = 4;
-  const PinholeCamera coarse = camera.Subsampled(kStride);
+cv::Mat_<float> DepthAlone(const std::vector<Eigen::Vector3f>& vertices,
+                           const Surface& surface,
+                           const PinholeCamera& camera) {
   Raster raster;
-  raster.Clear(coarse);
-  RasterizeTriangles(vertices, surface.mesh().triangles, coarse,
-                     /*cull_back_faces=*/true, 0, &raster);
-  return cv::countNonZero(raster.depth > 0) * kStride * kStride;
+  raster.Clear(camera.Subsampled(kAloneStride));
+  RasterizeTriangles(vertices, surface.mesh().triangles,
+                     camera.Subsampled(kAloneStride), /*cull_back_faces=*/true,
+                     0, &raster);
+  return raster.depth;
 }
 
 MeshRendering Render(const std::vector<const Surface*>& surfaces,
@@ -100,8 +99,7 @@ MeshRendering Render(const std::vector<const Surface*>& surfaces,
     const std::vector<Eigen::Vector3f> vertices = surface->WarpedVertices();
     RasterizeTriangles(vertices, surface->mesh().triangles, camera,
                        /*cull_back_faces=*/true, first, &rendering.raster);
-    rendering.unoccluded[surface->id()] =
-        CountPixels(vertices, *surface, camera);
+    rendering.alone[surface->id()] = DepthAlone(vertices, *surface, camera);
     first += static_cast<int>(surface->mesh().triangles.size());
   }
   if (first > 0) {

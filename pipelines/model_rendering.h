@@ -17,6 +17,9 @@ namespace splitfusion {
 /// Surfaces by id, the background first.
 using SurfaceMap = std::map<int, std::unique_ptr<Surface>>;
 
+/// See MeshRendering::alone.
+constexpr int kAloneStride = 4;
+
 /// All surfaces that are drawn from their meshes, warped and rasterised
 /// together, so that they hide one another.
 struct MeshRendering {
@@ -28,9 +31,9 @@ struct MeshRendering {
   /// noise of a young model that the TSDF's gradient still has.
   cv::Mat_<cv::Vec3f> normals;
   std::map<int, int> first_triangle;  ///< Surface id -> its first index.
-  /// Surface id -> pixels of the rendering that it would have if no other
-  /// surface hid it.
-  std::map<int, int> unoccluded;
+  /// Surface id -> its depth if no other surface hid it, at every
+  /// kAloneStride-th pixel of the rendering; metres, 0 = nothing.
+  std::map<int, cv::Mat_<float>> alone;
 };
 
 /// Renders the meshes under the current motions.

@@ -6,6 +6,7 @@
 #include "splitfusion/lib/association/image_shift.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/pipelines/exposure.h"
 
 namespace splitfusion {
 namespace {
@@ -155,13 +156,10 @@ void SplitFusion::TrackObjects(FrameReport* report) {
 }
 
 bool SplitFusion::IsHidden(SurfaceReport* report) {
-  const auto drawn = rendering_.unoccluded.find(report->id);
-  if (drawn == rendering_.unoccluded.end() || drawn->second == 0) return false;
   const double exposure =
-      report->pixels / (static_cast<double>(drawn->second) *
-                        options_.render_stride * options_.render_stride);
-  const bool was_hidden = hidden_.count(report->id) > 0;
+      Exposure(rendering_, options_.render_stride, live_, report->id);
   constexpr double kBack = 1.2;  // More must be seen to come back.
+  const bool was_hidden = hidden_.count(report->id) > 0;
   if (exposure >= (was_hidden ? kBack : 1) * options_.min_exposure)
     return false;
   hidden_.insert(report->id);

@@ -169,7 +169,7 @@ TEST_F(BatchTest, SummariesHoldTheTable) {
   EXPECT_EQ(json[1]["ate_rmse_m"], 0.0125);
   const std::string csv = folder_.Read("out/summary.csv");
   EXPECT_NE(
-      csv.find("/room/default,0,0,,10,1,0.0125,,,,,,,,,0.5,0.75,1048576\n"),
+      csv.find("/room/default,0,0,,10,1,0.0125,,,,,,,,,,0.5,0.75,1048576\n"),
       std::string::npos);
   const std::string table = FormatBatchTable(results);
   EXPECT_NE(table.find("0.0125"), std::string::npos);

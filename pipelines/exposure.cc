@@ -1,0 +1,28 @@
+#include "splitfusion/pipelines/exposure.h"
+
+namespace splitfusion {
+
+double Exposure(const MeshRendering& rendering, int stride,
+                const LiveView& live, int surface) {
+  const auto found = rendering.alone.find(surface);
+  if (found == rendering.alone.end()) return 1;
+  const cv::Mat_<float>& model = found->second;
+  const int step = kAloneStride * stride;
+  constexpr float kInFront = 0.1f;  // Metres.
+  int seen = 0;
+  int hidden = 0;
+  for (int v = 0; v < model.rows && v * step < live.depth.rows; ++v) {
+    for (int u = 0; u < model.cols && u * step < live.depth.cols; ++u) {
+      const float depth = live.depth(v * step, u * step);
+      if (!(depth > 0)) continue;
+      if (live.labels(v * step, u * step) == surface) {
+        ++seen;
+      } else {
+        hidden += depth < model(v, u) - kInFront;
+      }
+    }
+  }
+  return hidden > 0 ? seen / static_cast<double>(seen + hidden) : 1;
+}
+
+}  // namespace splitfusion
