@@ -50,7 +50,7 @@ ModelMap RenderBackground(const SurfaceMap& surfaces,
                           const RayCastOptions& options);
 
 /// Surface id and depth of every pixel of a rendering, the background (may be
-/// empty) behind it, resized to `full`.
+/// empty) behind it, resized to `full`; the pose is left as it is.
 SurfacePrediction ToPrediction(const MeshRendering& rendering,
                                const ModelMap& background,
                                const PinholeCamera& full);

@@ -93,9 +93,11 @@ void SplitFusion::Split(const Frame& frame, FrameReport* report) {
   if (segmenter_ == nullptr || !options_.split_scene) return;
   const std::vector<InstanceMask> detections = segmenter_->Segment(frame);
   report->segment_seconds = stopwatch.Restart();
+  SurfacePrediction prediction =
+      ToPrediction(rendering_, background_map_, camera_);
+  prediction.world_from_camera = WorldFromCamera();
   SplitResult split =
-      splitter_.Split(frame, live_.map, detections,
-                      ToPrediction(rendering_, background_map_, camera_));
+      splitter_.Split(frame, live_.map, detections, prediction);
   live_.labels = split.labels;
   if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
   report->decisions = std::move(split.decisions);
@@ -245,7 +247,9 @@ void SplitFusion::FollowInstances(FrameReport* report) {
   for (const auto& [id, instance] : splitter_.instances()) {
     const auto found = surfaces_.find(id);
     if (found == surfaces_.end()) continue;
-    found->second->set_dormant(instance.dormant);
+    const bool held = instance.held_by > 0;
+    if (held) hidden_.insert(id);  // Found where it is seen when released.
+    found->second->set_dormant(instance.dormant || held);
     found->second->set_label(instance.class_name);
     if (instance.merged_into == 0) continue;
     SurfaceReport merged;

@@ -21,7 +21,12 @@ DEFINE_double(depth_scale, 0, "Depth units a metre; 0 = calibration file.");
 DEFINE_double(min_depth, 0.4, "Metres; nearer depth is dropped.");
 DEFINE_double(max_depth, 5.0, "Metres; farther depth is dropped.");
 DEFINE_double(min_score, 0.4, "Detections below are ignored.");
-DEFINE_bool(rigid_objects, false, "Rigid classes get surfaces of their own.");
+DEFINE_string(rigid_objects, "background",
+              "Rigid classes: background (until they move) or separate "
+              "(surfaces of their own).");
+DEFINE_string(merge_touching, "",
+              "CLASS+CLASS,...: what touches an instance of an entry's first "
+              "class is a part of it, as in person+teddy bear.");
 DEFINE_string(terms, splitfusion::PipelineOptions().terms,
               "The energy: NAME(weight=,loss=,scale=) ...");
 DEFINE_double(prior_anneal, 8, "First factor on the priors' weights.");
@@ -195,7 +200,8 @@ PipelineOptions PipelineOptionsFromFlags() {
   PipelineOptions options;
   ApplyPreset(FLAGS_preset, &options);
   options.split.min_score = FLAGS_min_score;
-  options.split.rigid_objects = FLAGS_rigid_objects;
+  options.split.rigid_objects = ParseRigidObjects(FLAGS_rigid_objects);
+  options.split.merge_touching = ParseMergeGroups(FLAGS_merge_touching);
   options.terms = FLAGS_terms;
   options.render_stride = FLAGS_render_stride;
   options.min_exposure = FLAGS_min_exposure;

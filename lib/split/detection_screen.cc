@@ -9,19 +9,23 @@ Trust TrustOf(const InstanceMask& detection, const LabelTable& table,
               const SplitOptions& options) {
   const double area =
       double(cv::countNonZero(detection.mask)) / detection.mask.total();
-  const bool full = detection.score >= options.min_score &&
-                    area <= options.max_area &&
-                    IsTrackable(detection.class_name, table, options);
+  const bool full =
+      detection.score >= options.min_score && area <= options.max_area &&
+      (IsTrackable(detection.class_name, table, options) ||
+       MayBeHeld(options.merge_touching, detection.class_name));
   return full ? Trust::kFull : Trust::kMatched;
 }
 
-Segment MakeSegment(const Candidate& candidate, const Match& match) {
+Segment MakeSegment(const Candidate& candidate, const Match& match,
+                    const LabelTable& table, const SplitOptions& options) {
   Segment segment;
   segment.surface = match.surface;
   segment.mask = candidate.mask.clone();
   segment.class_name = candidate.class_name;
   segment.score = candidate.score;
   segment.iou = match.iou;
+  segment.only_held = !candidate.moved &&
+                      !IsTrackable(candidate.class_name, table, options);
   return segment;
 }
 
@@ -29,7 +33,7 @@ Segment MakeSegment(const Candidate& candidate, const Match& match) {
 
 bool IsTrackable(const std::string& class_name, const LabelTable& table,
                  const SplitOptions& options) {
-  return options.rigid_objects ||
+  return options.rigid_objects == RigidObjects::kSeparate ||
          table.Kind(class_name) == SurfaceKind::kNonRigid;
 }
 
@@ -55,13 +59,14 @@ SortedDetections SortDetections(const std::vector<Candidate>& candidates,
   sorted.unconfirmed = cv::Mat_<uchar>(size, uchar(0));
   std::map<int, std::size_t> segment_of;  // By surface.
   const auto add = [&](const Candidate& candidate, const Match& match) {
-    const Segment segment = MakeSegment(candidate, match);
+    const Segment segment = MakeSegment(candidate, match, table, options);
     const auto known = segment_of.find(match.surface);
     if (match.surface == 0 && candidate.trust != Trust::kFull) {
-      sorted.decisions.push_back(MakeDecision("ignored", segment));
+      sorted.decisions.push_back(
+          MakeDecision(candidate.moved ? "pending" : "ignored", segment));
       const bool weak = candidate.score < options.min_score &&
                         IsTrackable(candidate.class_name, table, options);
-      if (weak) sorted.unconfirmed |= candidate.mask;
+      if (weak || candidate.moved) sorted.unconfirmed |= candidate.mask;
     } else if (match.surface > 0 && known != segment_of.end()) {
       sorted.segments[known->second].mask |= candidate.mask;
       sorted.decisions.push_back(MakeDecision("merged", segment));

@@ -19,7 +19,8 @@ bool IsTrackable(const std::string& class_name, const LabelTable& table,
                  const SplitOptions& options);
 
 /// Drops detections outside of the allow-list, and says of the others how far
-/// they may be trusted (score, class, area).
+/// they may be trusted (score, class, area). What another may hold
+/// (SplitOptions::merge_touching) is trusted whatever its kind.
 std::vector<Candidate> ScreenDetections(
     const std::vector<InstanceMask>& detections, const LabelTable& table,
     const SplitOptions& options);

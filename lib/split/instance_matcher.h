@@ -23,6 +23,7 @@ struct Candidate {
   Trust trust = Trust::kFull;   ///< How far it may be trusted.
   std::string class_name = "";  ///< As the detector gave it.
   double score = 1;             ///< 0..1.
+  bool moved = false;           ///< Of a rigid class, but seems to have moved.
 };
 
 /// How detections are matched to projected surfaces.

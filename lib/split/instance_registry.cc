@@ -76,6 +76,17 @@ void InstanceRegistry::Merge(int part, int body) {
   instances_.at(part).dormant = true;
 }
 
+void InstanceRegistry::Hold(int part, int body) {
+  instances_.at(part).held_by = body;
+  last_holder_[part] = body;
+  apart_[part] = 0;
+}
+
+int InstanceRegistry::LastHolder(int part) const {
+  const auto found = last_holder_.find(part);
+  return found == last_holder_.end() ? 0 : found->second;
+}
+
 int InstanceRegistry::FindDormant(const Appearance& appearance,
                                   SurfaceKind kind) const {
   int best = 0;

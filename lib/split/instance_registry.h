@@ -20,6 +20,8 @@ struct TrackedInstance {
   int last_detected_frame = 0;  ///< Latest frame with a detection of it.
   bool dormant = false;  ///< Not followed: out of view or missed too long.
   int merged_into = 0;   ///< Surface it turned out to be a part of; 0 = none.
+  /// Surface that holds it and that its pixels belong to meanwhile; 0 = none.
+  int held_by = 0;
 };
 
 /// Looks of an instance, by which it is known when it comes back.
@@ -60,6 +62,19 @@ class InstanceRegistry {
   /// `part` was never an instance of its own.
   void Merge(int part, int body);
 
+  /// The pixels of `part` belong to `body` from now on; its id stays its own.
+  void Hold(int part, int body);
+
+  /// Counts a frame in which a held part was seen apart from what holds it, and
+  /// returns the count since they last touched.
+  int CountApart(int part) { return ++apart_[part]; }
+
+  /// Nothing holds the part any more.
+  void Release(int part) { instances_.at(part).held_by = 0; }
+
+  /// Latest surface that held a part; 0 if none ever did.
+  int LastHolder(int part) const;
+
   /// The dormant instance of this kind that looks most like `appearance`; 0
   /// if none is alike.
   int FindDormant(const Appearance& appearance, SurfaceKind kind) const;
@@ -80,6 +95,8 @@ class InstanceRegistry {
   std::map<int, std::map<std::string, double>> votes_;  // [id][class]
   std::map<int, Appearance> appearances_;
   std::map<std::pair<int, int>, int> covered_;
+  std::map<int, int> last_holder_;  // By part.
+  std::map<int, int> apart_;        // By part.
 };
 
 }  // namespace splitfusion

@@ -2,27 +2,14 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "splitfusion/lib/split/image_motion.h"
+
 namespace splitfusion {
 namespace {
 
 constexpr double kNewest = 0.25;  // Weight of the newest detection.
 constexpr float kUnknown = 0.5f;  // Support before the first detection.
 constexpr int kReach = 7;         // Pixels over which the support is spread.
-
-cv::Point2d Center(const cv::Mat& mask) {
-  const cv::Moments moments = cv::moments(mask, /*binaryImage=*/true);
-  if (moments.m00 <= 0) return {0, 0};
-  return {moments.m10 / moments.m00, moments.m01 / moments.m00};
-}
-
-template <typename T>
-cv::Mat_<T> Shifted(const cv::Mat_<T>& image, const cv::Point2d& shift) {
-  const cv::Mat_<double> motion =
-      (cv::Mat_<double>(2, 3) << 1, 0, shift.x, 0, 1, shift.y);
-  cv::Mat_<T> shifted;
-  cv::warpAffine(image, shifted, motion, image.size(), cv::INTER_NEAREST);
-  return shifted;
-}
 
 }  // namespace
 
@@ -35,7 +22,7 @@ cv::Mat_<float> MaskSupport::Predict(int surface,
     return result;
   }
   const State& state = found->second;
-  const cv::Point2d shift = Center(predicted) - Center(state.pixels);
+  const cv::Point2d shift = CenterOf(predicted) - CenterOf(state.pixels);
   cv::Mat_<float> inside;
   state.pixels.convertTo(inside, CV_32F, 1.0 / 255);
   inside = Shifted(inside, shift);

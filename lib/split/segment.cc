@@ -86,6 +86,10 @@ cv::Mat_<uchar> MasksBut(int but, const std::vector<Segment>& segments,
   return masks;
 }
 
+cv::Mat_<uchar> SegmentPixels(int index, const LabelImage& segment_labels) {
+  return segment_labels == index + 1;
+}
+
 LabelImage ComposeSegments(const std::vector<Segment>& segments,
                            const LabelImage& predicted_labels,
                            const cv::Mat& depth) {

@@ -18,6 +18,7 @@ struct Segment {
   std::string class_name;      ///< Of the best detection.
   double score = 0;            ///< Of the best detection; 0 if missed.
   double iou = 0;              ///< Of the best detection and the projection.
+  bool only_held = false;      ///< Background, unless something holds it.
   SurfaceEvidence evidence;    ///< What the cut is made from.
   cv::Mat_<uchar> foreground;  ///< Cut, size of evidence.crop, 255 inside.
 };
@@ -29,6 +30,9 @@ SplitDecision MakeDecision(const std::string& action, const Segment& segment);
 /// all), 255; of this size.
 cv::Mat_<uchar> MasksBut(int but, const std::vector<Segment>& segments,
                          cv::Size size);
+
+/// Pixels of the segment of this index in the result of ComposeSegments(), 255.
+cv::Mat_<uchar> SegmentPixels(int index, const LabelImage& segment_labels);
 
 /// Joins the cuts of all segments: HxW, 1 + index of the segment that a pixel
 /// belongs to, 0 = none. Where two claim a pixel the stronger evidence wins.

@@ -4,6 +4,13 @@
 
 namespace splitfusion {
 
+RigidObjects ParseRigidObjects(const std::string& word) {
+  const bool separate = word == "separate";
+  CheckOption(separate || word == "background", "rigid_objects", word,
+              "background or separate");
+  return separate ? RigidObjects::kSeparate : RigidObjects::kBackground;
+}
+
 void SplitOptions::Check() const {
   graph_cut.Check();
   prior.Check();

@@ -3,12 +3,25 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "splitfusion/lib/split/graph_cut.h"
+#include "splitfusion/lib/split/merge_groups.h"
 #include "splitfusion/lib/split/surface_prior.h"
 #include "splitfusion/lib/split/uncertain_region.h"
 
 namespace splitfusion {
+
+/// What becomes of detections of rigid classes.
+enum class RigidObjects {
+  kBackground,  ///< They are background, until they are seen to have moved.
+  kSeparate,    ///< They get surfaces of their own.
+};
+
+/// The choice of that name, "background" or "separate".
+///
+/// @throw OptionError on any other word.
+RigidObjects ParseRigidObjects(const std::string& word);
 
 /// How detections become surfaces; defaults hold for TUM-like sequences.
 struct SplitOptions {
@@ -30,7 +43,8 @@ struct SplitOptions {
   /// A newcomer is a part of the surface that it touches along this share of
   /// its border.
   double min_contact = 0.12;
-  bool rigid_objects = false;     ///< Give rigid classes surfaces of their own.
+  RigidObjects rigid_objects = RigidObjects::kBackground;  ///< See there.
+  std::vector<MergeGroup> merge_touching;  ///< One surface while they touch.
   std::set<std::string> classes;  ///< Allow-list; empty = all.
 
   /// @throw InputError if a value is out of its range.

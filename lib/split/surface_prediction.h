@@ -5,6 +5,8 @@
 #include <opencv2/core.hpp>
 #include <set>
 
+#include "splitfusion/lib/geometry/rigid3.h"
+
 namespace splitfusion {
 
 /// Surface id of a pixel; 0 is the background.
@@ -19,6 +21,8 @@ struct SurfacePrediction {
   /// HxW z-depth of the background alone, behind the surfaces too, metres; 0 =
   /// unknown. May be empty.
   cv::Mat_<float> background;
+  /// Predicted pose of the camera of this frame.
+  Rigid3d world_from_camera = Rigid3d::Identity();
 };
 
 /// The prediction in which labels and live depth of the frame before, `last`,

@@ -9,19 +9,19 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/split/detection_screen.h"
+#include "splitfusion/lib/split/held_parts.h"
 #include "splitfusion/lib/split/instance_matcher.h"
-#include "splitfusion/lib/split/surface_contact.h"
 #include "splitfusion/lib/split/surface_extent.h"
+#include "splitfusion/lib/split/surface_merging.h"
 
 namespace splitfusion {
 namespace {
 
-/// Frames in which a detection covers a second surface before the two are
-/// taken for one.
-constexpr int kCoveredFrames = 3;
-
 /// So early hardly any background is mapped that could speak against a birth.
 constexpr int kEarlyFrames = 10;
+
+/// Share of the background that agrees with the map when the pose is right.
+constexpr double kMinFit = 0.7;
 
 void CheckSize(const std::string& name, const cv::Mat& image,
                const PinholeCamera& camera) {
@@ -32,12 +32,26 @@ void CheckSize(const std::string& name, const cv::Mat& image,
                    std::to_string(camera.height));
 }
 
-cv::Mat_<uchar> PixelsOf(int index, const LabelImage& segment_labels) {
-  return segment_labels == index + 1;
+/// A surface of fewer pixels with depth is not followed on.
+int MinFollowedPixels(const SplitOptions& options) {
+  return options.min_pixels / 4;
 }
 
 int CountWithDepth(const cv::Mat& pixels, const cv::Mat& depth) {
   return cv::countNonZero(pixels & (depth > 0));
+}
+
+/// Whether most of what is background by the prior, outside of detections, is
+/// where it was mapped; true if nothing is known of it.
+bool BackgroundFits(const std::vector<Candidate>& candidates,
+                    const SplitWork& work) {
+  cv::Mat_<uchar> open = work.compared.labels == 0;
+  for (const Candidate& candidate : candidates) open.setTo(0, candidate.mask);
+  const cv::Mat_<uchar>& agreement = work.compared.agreement;
+  open.setTo(0, agreement == static_cast<int>(Agreement::kUnknown));
+  const int same = cv::countNonZero(
+      open & (agreement == static_cast<int>(Agreement::kSame)));
+  return same >= kMinFit * cv::countNonZero(open);
 }
 
 }  // namespace
@@ -47,7 +61,8 @@ SurfaceSplitter::SurfaceSplitter(const PinholeCamera& camera, LabelTable table,
     : camera_(camera),
       table_(std::move(table)),
       options_(std::move(options)),
-      births_(4 * options_.birth_frames) {
+      births_(4 * options_.birth_frames),
+      objects_(camera, options_) {
   camera_.Check();
   options_.Check();
 }
@@ -57,9 +72,10 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                                    const SurfacePrediction& prediction) {
   CheckSizes(frame, detections, prediction);
   ++frames_;
-  Work work{frame, points, {}, {}, {}, {}, {}, {}};
+  SplitWork work{frame, points, {}, {}, {}, {}, {}, {}, {}};
   work.prior = CompletePrediction(prediction, last_, registry_.Followed(),
                                   {camera_.width, camera_.height});
+  SplitHeldParts(registry_, last_.labels, &work.prior.labels);
   work.compared = CompareDepth(frame.depth, work.prior, options_.prior);
   CollectSegments(detections, &work);
   AddMissedSurfaces(&work);
@@ -67,7 +83,9 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
   work.segment_labels =
       ComposeSegments(work.segments, work.prior.labels, frame.depth);
   SettleSurfaces(&work);
-  MergeCoveredSurfaces(&work);
+  SettleNewcomers(&work);
+  MergeCoveredSurfaces(options_.min_contact, &registry_, &work);
+  HoldTouchingParts(options_.merge_touching, &registry_, &work);
   DrawLabels(&work);
   DrawUncertain(&work);
   Remember(work);
@@ -91,22 +109,43 @@ void SurfaceSplitter::CheckSizes(const Frame& frame,
 }
 
 void SurfaceSplitter::CollectSegments(
-    const std::vector<InstanceMask>& detections, Work* work) const {
-  const std::vector<Candidate> candidates =
+    const std::vector<InstanceMask>& detections, SplitWork* work) {
+  std::vector<Candidate> candidates =
       ScreenDetections(detections, table_, options_);
+  const cv::Mat_<uchar> standing_free = WatchObjects(*work, &candidates);
   MatchOptions match_options;
   match_options.min_iou = options_.min_match_iou;
-  const std::vector<Match> matches =
+  std::vector<Match> matches =
       MatchInstances(candidates, work->prior.labels, work->compared.agreement,
                      registry_.Matchable(), match_options);
+  TakeOutParts(options_.merge_touching, candidates, registry_, work, &matches);
   SortedDetections sorted = SortDetections(candidates, matches, table_,
                                            options_, work->frame.depth.size());
   work->segments = std::move(sorted.segments);
-  work->unconfirmed = sorted.unconfirmed;
+  work->unconfirmed = sorted.unconfirmed | standing_free;
   work->result.decisions = std::move(sorted.decisions);
 }
 
-void SurfaceSplitter::AddMissedSurfaces(Work* work) const {
+cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
+    const SplitWork& work, std::vector<Candidate>* candidates) {
+  cv::Mat_<uchar> claimed(work.frame.depth.size(), uchar(0));
+  for (const Candidate& candidate : *candidates) {
+    if (IsTrackable(candidate.class_name, table_, options_)) {
+      claimed |= candidate.mask;
+    }
+  }
+  for (const int id : registry_.Followed()) {
+    if (registry_.at(id).kind == SurfaceKind::kRigid) continue;
+    claimed |= work.prior.labels == id;
+  }
+  return objects_.Watch(
+      {work.frame.index, work.frame.depth, work.points,
+       work.prior.world_from_camera, BackgroundFits(*candidates, work),
+       claimed},
+      table_, candidates);
+}
+
+void SurfaceSplitter::AddMissedSurfaces(SplitWork* work) const {
   std::set<int> missed = registry_.Followed();
   for (const Segment& segment : work->segments) missed.erase(segment.surface);
   for (const int id : missed) {
@@ -117,7 +156,7 @@ void SurfaceSplitter::AddMissedSurfaces(Work* work) const {
   }
 }
 
-void SurfaceSplitter::CutSegments(Work* work) const {
+void SurfaceSplitter::CutSegments(SplitWork* work) const {
   std::vector<Segment>& segments = work->segments;
   tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
     Segment& segment = segments[i];
@@ -131,7 +170,7 @@ void SurfaceSplitter::CutSegments(Work* work) const {
   });
 }
 
-SurfaceObservation SurfaceSplitter::Observe(int index, const Work& work) const {
+SurfaceObservation SurfaceSplitter::Observe(int index, const SplitWork& work) const {
   const Segment& segment = work.segments[index];
   SurfaceObservation observation{
       segment.surface,
@@ -146,13 +185,13 @@ SurfaceObservation SurfaceSplitter::Observe(int index, const Work& work) const {
   return observation;
 }
 
-void SurfaceSplitter::SettleSurfaces(Work* work) {
+void SurfaceSplitter::SettleSurfaces(SplitWork* work) {
   const int count = static_cast<int>(work->segments.size());
   for (int i = 0; i < count; ++i) {
     const Segment& segment = work->segments[i];
     if (segment.surface == 0) continue;
     if (segment.mask.empty()) {
-      const cv::Mat_<uchar> pixels = PixelsOf(i, work->segment_labels);
+      const cv::Mat_<uchar> pixels = SegmentPixels(i, work->segment_labels);
       SettleMissed(segment, CountWithDepth(pixels, work->frame.depth), work);
       continue;
     }
@@ -162,65 +201,62 @@ void SurfaceSplitter::SettleSurfaces(Work* work) {
     work->result.decisions.push_back(
         MakeDecision(revived ? "revived" : "matched", segment));
   }
-  for (int i = 0; i < count; ++i) {
-    if (work->segments[i].surface == 0) SettleNewcomer(i, work);
-  }
 }
 
 void SurfaceSplitter::SettleMissed(const Segment& segment, int pixels,
-                                   Work* work) {
+                                   SplitWork* work) {
   const int missed =
       work->frame.index - registry_.at(segment.surface).last_detected_frame;
   const bool gone =
-      missed > options_.max_missed_frames || pixels < options_.min_pixels / 4;
+      missed > options_.max_missed_frames || pixels < MinFollowedPixels(options_);
   if (gone) registry_.SetDormant(segment.surface);
   work->result.decisions.push_back(
       MakeDecision(gone ? "dormant" : "missed", segment));
 }
 
-void SurfaceSplitter::SettleNewcomer(int index, Work* work) {
+void SurfaceSplitter::SettleNewcomers(SplitWork* work) {
+  const auto& groups = options_.merge_touching;
+  // What may be held last: who holds it may be new too.
+  for (const bool held : {false, true}) {
+    for (std::size_t i = 0; i < work->segments.size(); ++i) {
+      const Segment& segment = work->segments[i];
+      if (segment.surface == 0 &&
+          MayBeHeld(groups, segment.class_name) == held) {
+        SettleNewcomer(static_cast<int>(i), work);
+      }
+    }
+  }
+}
+
+void SurfaceSplitter::SettleNewcomer(int index, SplitWork* work) {
   Segment& segment = work->segments[index];
-  const cv::Mat_<uchar> pixels = PixelsOf(index, work->segment_labels);
-  if (const int body = FindBody(index, pixels, *work)) {
+  const cv::Mat_<uchar> pixels = SegmentPixels(index, work->segment_labels);
+  if (const int body =
+          FindBody(index, registry_, options_.min_contact, *work)) {
     segment.surface = body;
     work->result.decisions.push_back(MakeDecision("merged", segment));
     return;
   }
+  const bool held =
+      FindHolder(index, options_.merge_touching, registry_, *work) > 0;
   const bool large =
-      CountWithDepth(pixels, work->frame.depth) >= options_.min_pixels;
-  // Who is known needs no confirmation.
-  const int known = large ? FindKnown(segment, pixels, *work) : 0;
-  if (known > 0 || (large && IsConfirmed(segment, pixels, *work))) {
+      CountWithDepth(pixels, work->frame.depth) >=
+      (held ? MinFollowedPixels(options_) : options_.min_pixels);
+  const bool open = large && (held || !segment.only_held);
+  // Who is known, or held by someone, needs no confirmation.
+  const int known = open ? FindKnown(segment, pixels, *work) : 0;
+  if (known > 0 || (open && (held || IsConfirmed(segment, pixels, *work)))) {
     AddSurface(known, &segment, work);
     return;
   }
-  work->unconfirmed |= segment.mask | pixels;
+  if (!segment.only_held) work->unconfirmed |= segment.mask | pixels;
   work->result.decisions.push_back(
-      MakeDecision(large ? "pending" : "ignored", segment));
-}
-
-int SurfaceSplitter::FindBody(int index, const cv::Mat_<uchar>& pixels,
-                              const Work& work) const {
-  int best = 0;
-  double best_share = options_.min_contact;
-  for (int i = 0; i < static_cast<int>(work.segments.size()); ++i) {
-    const int id = work.segments[i].surface;
-    const bool alike =
-        i != index && id > 0 &&
-        registry_.at(id).class_name == work.segments[index].class_name;
-    if (!alike) continue;
-    const double share =
-        ContactShare(work.points, pixels, PixelsOf(i, work.segment_labels));
-    if (share < best_share) continue;
-    best_share = share;
-    best = id;
-  }
-  return best;
+      MakeDecision(open ? "pending" : "ignored", segment));
 }
 
 bool SurfaceSplitter::IsConfirmed(const Segment& segment,
                                   const cv::Mat_<uchar>& pixels,
-                                  const Work& work) {
+                                  const SplitWork& work) {
   const int hits = births_.Add(work.frame.index, segment.mask);
   if (frames_ == 1 && segment.score >= options_.confident_score) return true;
   const cv::Mat mapped =
@@ -234,13 +270,13 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
 
 int SurfaceSplitter::FindKnown(const Segment& segment,
                                const cv::Mat_<uchar>& pixels,
-                               const Work& work) const {
+                               const SplitWork& work) const {
   return registry_.FindDormant(
       ComputeAppearance(work.frame.color, work.points, pixels),
       table_.Kind(segment.class_name));
 }
 
-void SurfaceSplitter::AddSurface(int known, Segment* segment, Work* work) {
+void SurfaceSplitter::AddSurface(int known, Segment* segment, SplitWork* work) {
   births_.Remove(segment->mask);
   segment->surface =
       known > 0 ? known
@@ -252,41 +288,7 @@ void SurfaceSplitter::AddSurface(int known, Segment* segment, Work* work) {
       MakeDecision(known > 0 ? "revived" : "born", *segment));
 }
 
-void SurfaceSplitter::MergeCoveredSurfaces(Work* work) {
-  for (Segment& part : work->segments) {
-    if (part.surface == 0 || !part.mask.empty()) continue;
-    for (std::size_t i = 0; i < work->segments.size(); ++i) {
-      const Segment& body = work->segments[i];
-      if (!IsCovered(part, static_cast<int>(i), *work)) continue;
-      const int hits = registry_.CountCovered(part.surface, body.surface);
-      if (hits < kCoveredFrames) continue;
-      registry_.Merge(part.surface, body.surface);
-      work->result.decisions.push_back(MakeDecision("merged", part));
-      part.surface = body.surface;
-      break;
-    }
-  }
-}
-
-bool SurfaceSplitter::IsCovered(const Segment& part, int body_index,
-                                const Work& work) const {
-  const Segment& body = work.segments[body_index];
-  if (body.mask.empty() || body.surface == 0 ||
-      registry_.at(body.surface).class_name != part.class_name) {
-    return false;
-  }
-  const Overlap overlap = ComputeOverlap(
-      body.mask, part.surface, work.prior.labels, work.compared.agreement);
-  const MatchOptions limits;
-  if (overlap.covered * overlap.agreement < limits.min_contained) return false;
-  const cv::Mat_<uchar> seen =
-      AgreeingPixels(part.surface, work.prior.labels, work.compared.agreement);
-  return ContactShare(work.points, seen,
-                      PixelsOf(body_index, work.segment_labels)) >=
-         options_.min_contact;
-}
-
-void SurfaceSplitter::DrawLabels(Work* work) const {
+void SurfaceSplitter::DrawLabels(SplitWork* work) const {
   std::vector<std::uint16_t> id_of(work->segments.size() + 1, 0);
   for (std::size_t i = 0; i < work->segments.size(); ++i) {
     const int id = work->segments[i].surface;
@@ -294,13 +296,14 @@ void SurfaceSplitter::DrawLabels(Work* work) const {
       id_of[i + 1] = static_cast<std::uint16_t>(id);
     }
   }
-  work->result.labels.create(work->segment_labels.size());
+  work->labels.create(work->segment_labels.size());
   std::transform(work->segment_labels.begin(), work->segment_labels.end(),
-                 work->result.labels.begin(),
+                 work->labels.begin(),
                  [&](std::uint16_t segment) { return id_of[segment]; });
+  work->result.labels = JoinHeldParts(registry_, work->labels);
 }
 
-void SurfaceSplitter::DrawUncertain(Work* work) const {
+void SurfaceSplitter::DrawUncertain(SplitWork* work) const {
   const LabelImage& labels = work->result.labels;
   UncertainInput input{labels,
                        work->unconfirmed,
@@ -321,16 +324,16 @@ void SurfaceSplitter::DrawUncertain(Work* work) const {
   work->result.uncertain = DrawUncertainRegion(input, options_.uncertain);
 }
 
-void SurfaceSplitter::Remember(const Work& work) {
+void SurfaceSplitter::Remember(const SplitWork& work) {
   for (const Segment& segment : work.segments) {
     if (segment.surface == 0 || segment.mask.empty()) continue;
-    const cv::Mat_<uchar> pixels = work.result.labels == segment.surface;
+    const cv::Mat_<uchar> pixels = work.labels == segment.surface;
     registry_.RecordAppearance(
         segment.surface,
         ComputeAppearance(work.frame.color, work.points, pixels));
     support_.Update(segment.surface, pixels, segment.mask, work.prior.labels);
   }
-  last_ = {work.result.labels.clone(), work.frame.depth.clone(), {}};
+  last_ = {work.labels.clone(), work.frame.depth.clone(), {}, {}};
   last_.depth.setTo(0, work.result.uncertain);
 }
 

@@ -12,9 +12,11 @@
 #include "splitfusion/lib/split/birth_queue.h"
 #include "splitfusion/lib/split/instance_registry.h"
 #include "splitfusion/lib/split/mask_support.h"
+#include "splitfusion/lib/split/moving_objects.h"
 #include "splitfusion/lib/split/segment.h"
 #include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/lib/split/split_result.h"
+#include "splitfusion/lib/split/split_work.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 
 namespace splitfusion {
@@ -44,49 +46,37 @@ class SurfaceSplitter {
   }
 
  private:
-  /// What one call of Split() works on.
-  struct Work {
-    const Frame& frame;
-    const PointMap& points;
-    SurfacePrediction prior;
-    ComparedDepth compared;
-    std::vector<Segment> segments;
-    LabelImage segment_labels;    // 1 + index of the segment.
-    cv::Mat_<uchar> unconfirmed;  // Detections that are no surface.
-    SplitResult result;
-  };
-
   void CheckSizes(const Frame& frame,
                   const std::vector<InstanceMask>& detections,
                   const SurfacePrediction& prediction) const;
   void CollectSegments(const std::vector<InstanceMask>& detections,
-                       Work* work) const;
-  void AddMissedSurfaces(Work* work) const;
-  void CutSegments(Work* work) const;
-  SurfaceObservation Observe(int index, const Work& work) const;
-  void SettleSurfaces(Work* work);
-  void SettleMissed(const Segment& segment, int pixels, Work* work);
-  void SettleNewcomer(int index, Work* work);
-  int FindBody(int index, const cv::Mat_<uchar>& pixels,
-               const Work& work) const;
+                       SplitWork* work);
+  cv::Mat_<uchar> WatchObjects(const SplitWork& work,
+                               std::vector<Candidate>* candidates);
+  void AddMissedSurfaces(SplitWork* work) const;
+  void CutSegments(SplitWork* work) const;
+  SurfaceObservation Observe(int index, const SplitWork& work) const;
+  void SettleSurfaces(SplitWork* work);
+  void SettleMissed(const Segment& segment, int pixels, SplitWork* work);
+  void SettleNewcomers(SplitWork* work);
+  void SettleNewcomer(int index, SplitWork* work);
   bool IsConfirmed(const Segment& segment, const cv::Mat_<uchar>& pixels,
-                   const Work& work);
+                   const SplitWork& work);
   int FindKnown(const Segment& segment, const cv::Mat_<uchar>& pixels,
-                const Work& work) const;
-  void AddSurface(int known, Segment* segment, Work* work);
-  void MergeCoveredSurfaces(Work* work);
-  bool IsCovered(const Segment& part, int body_index, const Work& work) const;
-  void DrawLabels(Work* work) const;
-  void DrawUncertain(Work* work) const;
-  void Remember(const Work& work);
+                const SplitWork& work) const;
+  void AddSurface(int known, Segment* segment, SplitWork* work);
+  void DrawLabels(SplitWork* work) const;
+  void DrawUncertain(SplitWork* work) const;
+  void Remember(const SplitWork& work);
 
   PinholeCamera camera_;
   LabelTable table_;
   SplitOptions options_;
   InstanceRegistry registry_;
   BirthQueue births_;
+  MovingObjects objects_;
   MaskSupport support_;
-  SurfacePrediction last_;  // Labels and live depth of the frame before.
+  SurfacePrediction last_;  // Own labels and live depth of the frame before.
   int frames_ = 0;          // Split so far, the current one included.
 };
 

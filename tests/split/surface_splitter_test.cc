@@ -153,7 +153,7 @@ TEST_F(SurfaceSplitterTest, SpuriousDetectionsDoNotBecomeSurfaces) {
 
 TEST_F(SurfaceSplitterTest, RigidClassesAreSurfacesOnRequest) {
   SplitOptions options = SceneOptions();
-  options.rigid_objects = true;
+  options.rigid_objects = RigidObjects::kSeparate;
   UseOptions(options);
   LayeredScene scene;
   scene.Add(kCard, 2.0, 1);

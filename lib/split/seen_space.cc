@@ -1,0 +1,72 @@
+#include "splitfusion/lib/split/seen_space.h"
+
+#include <cmath>
+#include <cstddef>
+#include <opencv2/imgproc.hpp>
+
+namespace splitfusion {
+namespace {
+
+constexpr int kInterval = 4;         // Frames.
+constexpr std::size_t kViews = 12;   // Remembered at most.
+constexpr int kWindow = 5;           // Pixels: room for errors of the pose.
+constexpr float kClearance = 0.08f;  // Metres, beside the noise.
+
+}  // namespace
+
+void SeenSpace::Add(int frame, const cv::Mat& depth,
+                    const Rigid3d& world_from_camera) {
+  if (!views_.empty() && frame - views_.back().frame < kInterval) return;
+  View view{frame, {}, world_from_camera.inverse().cast<float>()};
+  cv::erode(depth, view.depth, cv::Mat::ones(kWindow, kWindow, CV_8U));
+  views_.push_back(view);
+  if (views_.size() > kViews) Thin();
+}
+
+/// Drops the view that leaves the smallest gap in time, for its age: the gaps
+/// grow with the age.
+void SeenSpace::Thin() {
+  std::size_t best = 1;
+  double best_gap = INFINITY;
+  for (std::size_t i = 1; i + 1 < views_.size(); ++i) {
+    const double age = views_.back().frame - views_[i].frame;
+    const double gap = (views_[i + 1].frame - views_[i - 1].frame) / age;
+    if (gap >= best_gap) continue;
+    best_gap = gap;
+    best = i;
+  }
+  views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(best));
+}
+
+bool SeenSpace::LookedThrough(const View& view,
+                              const Eigen::Vector3f& point) const {
+  if (point.z() <= 0) return false;
+  const Eigen::Vector2f pixel = camera_.Project(point);
+  const int u = static_cast<int>(std::lround(pixel.x()));
+  const int v = static_cast<int>(std::lround(pixel.y()));
+  if (u < 0 || v < 0 || u >= camera_.width || v >= camera_.height) return false;
+  const float seen = view.depth(v, u);
+  const float noise = 3 * (DepthSigma(seen) + DepthSigma(point.z()));
+  return seen > point.z() + kClearance + noise;
+}
+
+cv::Mat_<uchar> SeenSpace::WasEmpty(const cv::Mat_<uchar>& mask,
+                                    const PointMap& points,
+                                    const Rigid3d& world_from_camera) const {
+  cv::Mat_<uchar> empty(mask.size(), uchar(0));
+  const Rigid3f world_from_live = world_from_camera.cast<float>();
+  for (const View& view : views_) {
+    const Rigid3f view_from_live = view.camera_from_world * world_from_live;
+    for (int v = 0; v < mask.rows; ++v) {
+      for (int u = 0; u < mask.cols; ++u) {
+        const cv::Vec3f& p = points.points(v, u);
+        if (!mask(v, u) || empty(v, u) || p[2] <= 0) continue;
+        const Eigen::Vector3f point(p[0], p[1], p[2]);
+        if (LookedThrough(view, view_from_live * point)) empty(v, u) = 255;
+      }
+    }
+  }
+  return empty;
+}
+
+}  // namespace splitfusion
