@@ -130,7 +130,8 @@ cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
     const SplitWork& work, std::vector<Candidate>* candidates) {
   cv::Mat_<uchar> claimed(work.frame.depth.size(), uchar(0));
   for (const Candidate& candidate : *candidates) {
-    if (IsTrackable(candidate.class_name, table_, options_)) {
+    if (candidate.score >= options_.min_score &&
+        IsTrackable(candidate.class_name, table_, options_)) {
       claimed |= candidate.mask;
     }
   }
@@ -249,7 +250,11 @@ void SurfaceSplitter::SettleNewcomer(int index, SplitWork* work) {
     AddSurface(known, &segment, work);
     return;
   }
-  if (!segment.only_held) work->unconfirmed |= segment.mask | pixels;
+  if (segment.only_held) {
+    segment.mask.setTo(0);  // Background.
+  } else {
+    work->unconfirmed |= segment.mask | pixels;
+  }
   work->result.decisions.push_back(
       MakeDecision(open ? "pending" : "ignored", segment));
 }

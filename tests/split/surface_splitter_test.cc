@@ -4,7 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "split/layered_scene.h"
+#include "split/splitter_fixture.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 #include "splitfusion/lib/sequence/tum_reader.h"
 #include "support/expect_input_error.h"
@@ -16,17 +16,8 @@ namespace {
 const cv::Rect kCard(50, 25, 40, 70);
 const cv::Rect kArm(90, 50, 45, 10);  // Touches the card.
 
-/// Splits scenes frame by frame, without predictions of a tracker.
-class SurfaceSplitterTest : public testing::Test {
+class SurfaceSplitterTest : public SplitterTest {
  protected:
-  SplitResult Split(LayeredScene& scene,
-                    const std::vector<InstanceMask>& detections,
-                    const SurfacePrediction& prediction = {}) {
-    const Frame frame = scene.MakeFrame(next_frame_++);
-    last_ = splitter_.Split(frame, ComputePointMap(frame.depth, SceneCamera()),
-                            detections, prediction);
-    return last_;
-  }
   /// Splits a frame with the card alone, then one in which it raises an arm,
   /// far outside of it and of every band around it, while a tracker predicts
   /// the card as it was before a known wall. Without a detection if `missed`,
@@ -45,24 +36,6 @@ class SurfaceSplitterTest : public testing::Test {
           prediction);
     return second.Truth(1);
   }
-  /// Number of decisions of this kind in the last frame.
-  int Count(const std::string& action) const {
-    int count = 0;
-    for (const SplitDecision& decision : last_.decisions) {
-      count += decision.action == action;
-    }
-    return count;
-  }
-  double IouOf(int id, const cv::Mat& truth) const {
-    return Iou(last_.labels == id, truth);
-  }
-  void UseOptions(const SplitOptions& options) {
-    splitter_ = SurfaceSplitter(SceneCamera(), LabelTable(), options);
-  }
-
-  SurfaceSplitter splitter_{SceneCamera(), LabelTable(), SceneOptions()};
-  SplitResult last_;
-  int next_frame_ = 0;
 };
 
 TEST_F(SurfaceSplitterTest, AConfidentDetectionIsBornInTheFirstFrame) {
