@@ -96,8 +96,7 @@ void SplitFusion::Split(const Frame& frame, FrameReport* report) {
   SurfacePrediction prediction =
       ToPrediction(rendering_, background_map_, camera_);
   prediction.world_from_camera = WorldFromCamera();
-  SplitResult split =
-      splitter_.Split(frame, live_.map, detections, prediction);
+  SplitResult split = splitter_.Split(frame, live_.map, detections, prediction);
   live_.labels = split.labels;
   if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
   report->decisions = std::move(split.decisions);

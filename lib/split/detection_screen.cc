@@ -9,10 +9,10 @@ Trust TrustOf(const InstanceMask& detection, const LabelTable& table,
               const SplitOptions& options) {
   const double area =
       double(cv::countNonZero(detection.mask)) / detection.mask.total();
-  const bool full =
-      detection.score >= options.min_score && area <= options.max_area &&
-      (IsTrackable(detection.class_name, table, options) ||
-       MayBeHeld(options.merge_touching, detection.class_name));
+  const bool full = detection.score >= options.min_score &&
+                    area <= options.max_area &&
+                    (IsTrackable(detection.class_name, table, options) ||
+                     MayBeHeld(options.merge_touching, detection.class_name));
   return full ? Trust::kFull : Trust::kMatched;
 }
 
@@ -24,8 +24,8 @@ Segment MakeSegment(const Candidate& candidate, const Match& match,
   segment.class_name = candidate.class_name;
   segment.score = candidate.score;
   segment.iou = match.iou;
-  segment.only_held = !candidate.moved &&
-                      !IsTrackable(candidate.class_name, table, options);
+  segment.only_held =
+      !candidate.moved && !IsTrackable(candidate.class_name, table, options);
   return segment;
 }
 

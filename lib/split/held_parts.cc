@@ -27,9 +27,8 @@ double TouchShare(int part_index, int body_index,
   const int body = work.segments[body_index].surface;
   if (body == 0 || body == part.surface) return 0;
   if (registry.at(body).dormant || registry.at(body).held_by > 0) return 0;
-  const std::string& part_class = part.surface > 0
-                                      ? registry.at(part.surface).class_name
-                                      : part.class_name;
+  const std::string& part_class =
+      part.surface > 0 ? registry.at(part.surface).class_name : part.class_name;
   if (!MayHold(groups, registry.at(body).class_name, part_class)) return 0;
   return ContactShare(work.points,
                       SegmentPixels(part_index, work.segment_labels),

@@ -15,9 +15,8 @@ std::vector<std::string> Parts(const std::string& text, char separator) {
   for (std::string part; std::getline(stream, part, separator);) {
     const std::size_t begin = part.find_first_not_of(" \t");
     const std::size_t end = part.find_last_not_of(" \t");
-    parts.push_back(begin == std::string::npos
-                        ? ""
-                        : part.substr(begin, end - begin + 1));
+    parts.push_back(
+        begin == std::string::npos ? "" : part.substr(begin, end - begin + 1));
   }
   return parts;
 }
@@ -26,8 +25,9 @@ std::vector<std::string> Parts(const std::string& text, char separator) {
 MergeGroup ParseGroup(const std::string& entry) {
   const std::vector<std::string> names = Parts(entry, '+');
   const std::set<std::string> held(names.begin() + 1, names.end());
-  const bool valid = held.size() + 1 == names.size() && !names.front().empty() &&
-                     held.count("") == 0 && held.count(names.front()) == 0;
+  const bool valid = held.size() + 1 == names.size() &&
+                     !names.front().empty() && held.count("") == 0 &&
+                     held.count(names.front()) == 0;
   return {names.front(), valid ? held : std::set<std::string>{}};
 }
 

@@ -45,7 +45,7 @@ struct SplitOptions {
   double min_contact = 0.12;
   RigidObjects rigid_objects = RigidObjects::kBackground;  ///< See there.
   std::vector<MergeGroup> merge_touching;  ///< One surface while they touch.
-  std::set<std::string> classes;  ///< Allow-list; empty = all.
+  std::set<std::string> classes;           ///< Allow-list; empty = all.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;

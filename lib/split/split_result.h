@@ -11,11 +11,11 @@ namespace splitfusion {
 
 /// One decision, for the report.
 struct SplitDecision {
-  /// "matched": a detection of a known surface. "merged": a piece of one, or
-  /// a surface that turned out to be one. "born", "revived": a new surface, a
-  /// dormant one seen again. "missed", "dormant": a surface without detection,
-  /// carried or given up. "pending", "ignored": a detection that may yet
-  /// become a surface, or may not.
+  /// "matched": a detection of a known surface. "merged": a piece of one, what
+  /// it holds, or a surface that turned out to be a piece. "born", "revived": a
+  /// new surface, a dormant one seen again. "missed", "dormant": a surface
+  /// without detection, carried or given up. "pending", "ignored": a detection
+  /// that may yet become a surface, or may not.
   std::string action;
   int surface = 0;         ///< Surface id, 0 if none.
   std::string class_name;  ///< Of the detection, or of a missed surface.

@@ -15,15 +15,15 @@ namespace splitfusion {
 
 /// What the splitter works on in one frame; images are HxW.
 struct SplitWork {
-  const Frame& frame;            ///< Live colour and depth.
-  const PointMap& points;        ///< Of the live depth.
-  SurfacePrediction prior;       ///< Complete: never empty.
-  ComparedDepth compared;        ///< Live depth with the prior.
-  std::vector<Segment> segments; ///< One a surface or newcomer.
-  LabelImage segment_labels;     ///< 1 + index of the segment; 0 = none.
-  LabelImage labels;             ///< Surface ids; held parts have their own.
-  cv::Mat_<uchar> unconfirmed;   ///< 255: detected, but no surface.
-  SplitResult result;            ///< Under construction.
+  const Frame& frame;             ///< Live colour and depth.
+  const PointMap& points;         ///< Of the live depth.
+  SurfacePrediction prior;        ///< Complete: never empty.
+  ComparedDepth compared;         ///< Live depth with the prior.
+  std::vector<Segment> segments;  ///< One a surface or newcomer.
+  LabelImage segment_labels;      ///< 1 + index of the segment; 0 = none.
+  LabelImage labels;              ///< Surface ids; held parts have their own.
+  cv::Mat_<uchar> unconfirmed;    ///< 255: detected, but no surface.
+  SplitResult result;             ///< Under construction.
 };
 
 }  // namespace splitfusion

@@ -8,9 +8,12 @@ SurfacePrediction CompletePrediction(const SurfacePrediction& prediction,
                                      cv::Size size) {
   if (prediction.labels.empty()) {
     if (!last.labels.empty()) {
-      return {last.labels.clone(), last.depth, {}, prediction.world_from_camera};
+      return {
+          last.labels.clone(), last.depth, {}, prediction.world_from_camera};
     }
-    return {LabelImage(size, 0), cv::Mat_<float>(size, 0.0f), {},
+    return {LabelImage(size, 0),
+            cv::Mat_<float>(size, 0.0f),
+            {},
             prediction.world_from_camera};
   }
   SurfacePrediction completed{prediction.labels.clone(),

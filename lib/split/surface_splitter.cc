@@ -139,11 +139,10 @@ cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
     if (registry_.at(id).kind == SurfaceKind::kRigid) continue;
     claimed |= work.prior.labels == id;
   }
-  return objects_.Watch(
-      {work.frame.index, work.frame.depth, work.points,
-       work.prior.world_from_camera, BackgroundFits(*candidates, work),
-       claimed},
-      table_, candidates);
+  return objects_.Watch({work.frame.index, work.frame.depth, work.points,
+                         work.prior.world_from_camera,
+                         BackgroundFits(*candidates, work), claimed},
+                        table_, candidates);
 }
 
 void SurfaceSplitter::AddMissedSurfaces(SplitWork* work) const {
@@ -171,7 +170,8 @@ void SurfaceSplitter::CutSegments(SplitWork* work) const {
   });
 }
 
-SurfaceObservation SurfaceSplitter::Observe(int index, const SplitWork& work) const {
+SurfaceObservation SurfaceSplitter::Observe(int index,
+                                            const SplitWork& work) const {
   const Segment& segment = work.segments[index];
   SurfaceObservation observation{
       segment.surface,
@@ -208,8 +208,8 @@ void SurfaceSplitter::SettleMissed(const Segment& segment, int pixels,
                                    SplitWork* work) {
   const int missed =
       work->frame.index - registry_.at(segment.surface).last_detected_frame;
-  const bool gone =
-      missed > options_.max_missed_frames || pixels < MinFollowedPixels(options_);
+  const bool gone = missed > options_.max_missed_frames ||
+                    pixels < MinFollowedPixels(options_);
   if (gone) registry_.SetDormant(segment.surface);
   work->result.decisions.push_back(
       MakeDecision(gone ? "dormant" : "missed", segment));
@@ -240,9 +240,8 @@ void SurfaceSplitter::SettleNewcomer(int index, SplitWork* work) {
   }
   const bool held =
       FindHolder(index, options_.merge_touching, registry_, *work) > 0;
-  const bool large =
-      CountWithDepth(pixels, work->frame.depth) >=
-      (held ? MinFollowedPixels(options_) : options_.min_pixels);
+  const bool large = CountWithDepth(pixels, work->frame.depth) >=
+                     (held ? MinFollowedPixels(options_) : options_.min_pixels);
   const bool open = large && (held || !segment.only_held);
   // Who is known, or held by someone, needs no confirmation.
   const int known = open ? FindKnown(segment, pixels, *work) : 0;

@@ -198,9 +198,9 @@ TEST(MergeGroups, AreReadFromText) {
 }
 
 TEST(MergeGroups, NameWhatDoesNotParse) {
-  for (const std::string text : {"person", "person+", "+teddy bear", " ",
-                                 "person+teddy bear,", "a+b,,c+d", "a+a",
-                                 "a+b+b"}) {
+  for (const std::string text :
+       {"person", "person+", "+teddy bear", " ", "person+teddy bear,",
+        "a+b,,c+d", "a+a", "a+b+b"}) {
     ExpectInputError([&] { ParseMergeGroups(text); },
                      "merge_touching = " + text + ": expected entries of at");
   }

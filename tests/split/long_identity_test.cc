@@ -117,8 +117,7 @@ TEST_F(LongIdentityTest, SpuriousDetectionsLeaveNoSurface) {
   for (int i = 0; i < 80; ++i) {
     LayeredScene scene(3.0, i);
     scene.Add({60, 15, 50, 100}, kNear, 1);
-    std::vector<InstanceMask> detections = {
-        {scene.Truth(1), "person", 0.9}};
+    std::vector<InstanceMask> detections = {{scene.Truth(1), "person", 0.9}};
     // Every third frame, somewhere, as sure as can be.
     const cv::Rect ghost(random.uniform(0, 120), random.uniform(0, 80), 35, 40);
     if (i % 3 == 2) detections.push_back({RectMask(ghost), "dog", 0.95});

@@ -76,8 +76,8 @@ TEST_F(MovingObjectsTest, AStandingChairUnderNoisyMasksStaysBackground) {
   for (int i = 0; i < 60; ++i) {
     LayeredScene scene(3.0, i);
     scene.Add(ChairAt(60), 2.0, 1);
-    cv::Mat_<uchar> mask = Moved(scene.Truth(1), random.uniform(-4, 5),
-                                 random.uniform(-4, 5));
+    cv::Mat_<uchar> mask =
+        Moved(scene.Truth(1), random.uniform(-4, 5), random.uniform(-4, 5));
     const int size = random.uniform(1, 7);
     const cv::Mat kernel = cv::Mat::ones(2 * size + 1, 2 * size + 1, CV_8U);
     if (i % 2 == 0) cv::dilate(mask, mask, kernel);
@@ -170,8 +170,8 @@ TEST_F(SeenSpaceTest, EndsAtTheBordersOfTheView) {
   aside.translation().x() = 3;
   EXPECT_EQ(EmptyShare(2.0, aside), 0);
   Rigid3d behind = here_;
-  behind.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY())
-                        .toRotationMatrix();
+  behind.linear() =
+      Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
   EXPECT_EQ(EmptyShare(2.0, behind), 0);
   Rigid3d back = here_;
   back.translation().z() = -1;  // The card is 1 m before the old view.

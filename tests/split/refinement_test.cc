@@ -79,8 +79,8 @@ class RefinementTest : public testing::Test {
       const double after =
           Iou((result.labels == 1) & measured, truth & measured);
       EXPECT_GE(after, before) << "frame " << frame.frame.index;
-      EXPECT_GE(after, bound) << "frame " << frame.frame.index << ", before "
-                              << before;
+      EXPECT_GE(after, bound)
+          << "frame " << frame.frame.index << ", before " << before;
     }
   }
   static PinholeCamera camera_;
@@ -122,9 +122,9 @@ TEST_F(RefinementTest, LeavesExactMasksNearlyAsTheyAre) {
   for (const SyntheticFrame& frame : frames_) {
     const cv::Mat measured = frame.frame.depth > 0;
     const cv::Mat_<uchar> truth = frame.labels == kPersonId;
-    const SplitResult result = splitter.Split(
-        frame.frame, ComputePointMap(frame.frame.depth, camera_),
-        {{exact(truth), "person", 0.9}}, {});
+    const SplitResult result =
+        splitter.Split(frame.frame, ComputePointMap(frame.frame.depth, camera_),
+                       {{exact(truth), "person", 0.9}}, {});
     EXPECT_GE(Iou((result.labels == 1) & measured, truth & measured), 0.97);
   }
 }

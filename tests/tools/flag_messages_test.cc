@@ -42,6 +42,10 @@ TEST_F(FlagMessages, NameTheFlagOfAnOptionOfTheSameName) {
   RunRefuses("--far_spacing=0.01",
              "--far_spacing = 0.01: expected metres >= near_spacing");
   RunRefuses("--min_score=2", "--min_score = 2: expected 0..1");
+  RunRefuses("--rigid_objects=yes",
+             "--rigid_objects = yes: expected background or separate");
+  RunRefuses("--merge_touching=person",
+             "--merge_touching = person: expected entries of at least two");
   RunRefuses("--intrinsics=0,1,1,1,64,48", "--intrinsics=0,1,1,1,64,48: camer");
   ExpectRefused("sf_batch", "--jobs=0 --sequences=. --output=none",
                 "--jobs = 0: expected 1..");
