@@ -16,10 +16,10 @@ namespace splitfusion {
 
 /// What is known of a frame when its moving objects are looked for.
 struct MotionView {
-  int frame = 0;           ///< Index.
-  const cv::Mat& depth;    ///< HxW 32FC1, metres, 0 = none.
-  const PointMap& points;  ///< Camera frame, metres.
-  const Rigid3d& world_from_camera;
+  int frame = 0;                     ///< Index.
+  const cv::Mat& depth;              ///< HxW 32FC1, metres, 0 = none.
+  const PointMap& points;            ///< Camera frame, metres.
+  const Rigid3d& world_from_camera;  ///< Predicted pose.
   /// Whether the live depth lies on the mapped background, as it does if the
   /// pose is right.
   bool pose_fits = true;
