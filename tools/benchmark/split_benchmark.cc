@@ -1,0 +1,125 @@
+// Time of the first stage, from colour image to refined masks (SplitFusion
+// IV-A), on a 640x480 frame of the synthetic room with a person and a toy. The
+// network runs if the environment variable SPLITFUSION_MODEL names an ONNX file
+// (and SPLITFUSION_DECODER its decoder, else yolov8seg).
+
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/point_map.h"
+#include "splitfusion/lib/segmentation/network_segmenter.h"
+#include "splitfusion/lib/split/instance_matcher.h"
+#include "splitfusion/lib/split/surface_splitter.h"
+#include "splitfusion/lib/synthetic/synthetic_scene.h"
+
+namespace splitfusion {
+namespace {
+
+/// A frame, its detections, and an exact prediction of its surfaces.
+class SplitFixture : public benchmark::Fixture {
+ public:
+  void SetUp(const benchmark::State&) override {
+    const SyntheticScene scene{SyntheticOptions()};
+    camera_ = scene.camera();
+    frame_ = scene.Render(kFrame);
+    points_ = ComputePointMap(frame_.frame.depth, camera_);
+    detections_ = scene.Detections(frame_);
+    for (const SyntheticInstance& instance : scene.instances()) {
+      if (instance.category == "person") person_ = instance.id;
+    }
+    frame_.labels.convertTo(prediction_.labels, CV_16U);
+    prediction_.labels.setTo(0, frame_.labels > person_);
+    prediction_.depth = frame_.true_depth.clone();
+    compared_ = CompareDepth(frame_.frame.depth, prediction_, PriorOptions());
+  }
+
+  cv::Mat_<uchar> PersonMask() const {
+    return cv::Mat_<uchar>(frame_.labels == person_);
+  }
+
+ protected:
+  static constexpr int kFrame = 40;
+
+  PinholeCamera camera_;
+  SyntheticFrame frame_;
+  PointMap points_;
+  std::vector<InstanceMask> detections_;
+  SurfacePrediction prediction_;
+  ComparedDepth compared_;
+  int person_ = 1;
+};
+
+BENCHMARK_DEFINE_F(SplitFixture, RefinePerson)(benchmark::State& state) {
+  SurfaceObservation observation{person_, PersonMask(), {}, {}, {}};
+  for (auto _ : state) {
+    const SurfaceEvidence gathered = GatherEvidence(
+        observation, compared_, GraphCutOptions(), PriorOptions());
+    benchmark::DoNotOptimize(CutForeground(points_, frame_.frame.color,
+                                           gathered.crop, gathered.evidence,
+                                           GraphCutOptions()));
+  }
+  state.counters["pixels"] = cv::countNonZero(observation.mask);
+}
+
+BENCHMARK_DEFINE_F(SplitFixture, MatchInstances)(benchmark::State& state) {
+  std::vector<Candidate> candidates;
+  for (const InstanceMask& detection : detections_) {
+    Candidate candidate;
+    candidate.mask = detection.mask;
+    candidates.push_back(candidate);
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(MatchInstances(candidates, prediction_.labels,
+                                            compared_.agreement, {person_},
+                                            MatchOptions()));
+  }
+  state.counters["detections"] = static_cast<double>(candidates.size());
+}
+
+BENCHMARK_DEFINE_F(SplitFixture, SplitFrame)(benchmark::State& state) {
+  SurfaceSplitter splitter(camera_, LabelTable(), SplitOptions());
+  for (auto _ : state) {
+    ++frame_.frame.index;
+    benchmark::DoNotOptimize(
+        splitter.Split(frame_.frame, points_, detections_, {}));
+  }
+}
+
+BENCHMARK_DEFINE_F(SplitFixture, Network)(benchmark::State& state) {
+  const char* model = std::getenv("SPLITFUSION_MODEL");
+  if (model == nullptr) {
+    state.SkipWithError("SPLITFUSION_MODEL is not set");
+    return;
+  }
+  const char* decoder = std::getenv("SPLITFUSION_DECODER");
+  try {
+    NetworkOptions options;
+    options.model = model;
+    options.decoder = decoder != nullptr ? decoder : "yolov8seg";
+    NetworkSegmenter segmenter(options);
+    for (auto _ : state) {
+      benchmark::DoNotOptimize(segmenter.Segment(frame_.frame));
+    }
+  } catch (const InputError& error) {
+    state.SkipWithError(error.what());
+  }
+}
+
+BENCHMARK_REGISTER_F(SplitFixture, RefinePerson)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_REGISTER_F(SplitFixture, MatchInstances)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_REGISTER_F(SplitFixture, SplitFrame)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_REGISTER_F(SplitFixture, Network)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+}  // namespace
+}  // namespace splitfusion
