@@ -87,14 +87,13 @@ int InstanceRegistry::LastHolder(int part) const {
   return found == last_holder_.end() ? 0 : found->second;
 }
 
-int InstanceRegistry::FindDormant(const Appearance& appearance,
-                                  SurfaceKind kind) const {
+int InstanceRegistry::FindAlike(const Appearance& appearance, SurfaceKind kind,
+                                const std::set<int>& ids) const {
   int best = 0;
   double best_similarity = kMinSimilarity;
-  for (const auto& [id, instance] : instances_) {
-    if (!instance.dormant || instance.merged_into > 0) continue;
+  for (const int id : ids) {
     const auto known = appearances_.find(id);
-    if (instance.kind != kind || known == appearances_.end()) continue;
+    if (at(id).kind != kind || known == appearances_.end()) continue;
     const double similarity =
         AppearanceSimilarity(known->second, appearance, kMaxReturnDistance);
     if (similarity <= best_similarity) continue;
@@ -108,6 +107,14 @@ std::set<int> InstanceRegistry::Matchable() const {
   std::set<int> ids;
   for (const auto& [id, instance] : instances_) {
     if (instance.merged_into == 0) ids.insert(id);
+  }
+  return ids;
+}
+
+std::set<int> InstanceRegistry::Dormant() const {
+  std::set<int> ids;
+  for (const int id : Matchable()) {
+    if (at(id).dormant) ids.insert(id);
   }
   return ids;
 }

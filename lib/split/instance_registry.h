@@ -75,12 +75,16 @@ class InstanceRegistry {
   /// Latest surface that held a part; 0 if none ever did.
   int LastHolder(int part) const;
 
-  /// The dormant instance of this kind that looks most like `appearance`; 0
-  /// if none is alike.
-  int FindDormant(const Appearance& appearance, SurfaceKind kind) const;
+  /// The instance of this kind, of these `ids`, that looks most like
+  /// `appearance`; 0 if none is alike.
+  int FindAlike(const Appearance& appearance, SurfaceKind kind,
+                const std::set<int>& ids) const;
 
   /// Ids that detections may be matched to: all but merged ones.
   std::set<int> Matchable() const;
+
+  /// Ids of those that are not followed, but may come back.
+  std::set<int> Dormant() const;
 
   /// Ids of the instances that should be in view: neither merged nor dormant.
   std::set<int> Followed() const;

@@ -10,6 +10,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/split/detection_screen.h"
 #include "splitfusion/lib/split/held_parts.h"
+#include "splitfusion/lib/split/hidden_instances.h"
 #include "splitfusion/lib/split/instance_matcher.h"
 #include "splitfusion/lib/split/surface_extent.h"
 #include "splitfusion/lib/split/surface_merging.h"
@@ -118,6 +119,7 @@ void SurfaceSplitter::CollectSegments(
   std::vector<Match> matches =
       MatchInstances(candidates, work->prior.labels, work->compared.agreement,
                      registry_.Matchable(), match_options);
+  RecognizeHidden(candidates, table_, registry_, *work, &matches);
   TakeOutParts(options_.merge_touching, candidates, registry_, work, &matches);
   SortedDetections sorted = SortDetections(candidates, matches, table_,
                                            options_, work->frame.depth.size());
@@ -275,9 +277,9 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
 int SurfaceSplitter::FindKnown(const Segment& segment,
                                const cv::Mat_<uchar>& pixels,
                                const SplitWork& work) const {
-  return registry_.FindDormant(
+  return registry_.FindAlike(
       ComputeAppearance(work.frame.color, work.points, pixels),
-      table_.Kind(segment.class_name));
+      table_.Kind(segment.class_name), registry_.Dormant());
 }
 
 void SurfaceSplitter::AddSurface(int known, Segment* segment, SplitWork* work) {

@@ -115,14 +115,18 @@ TEST(InstanceRegistry, RecognisesWhoComesBack) {
   InstanceRegistry registry;
   const int id = registry.Create(0, "person", SurfaceKind::kNonRigid);
   registry.RecordAppearance(id, looks(1));
-  EXPECT_EQ(registry.FindDormant(looks(1), SurfaceKind::kNonRigid), 0);
+  const auto alike = [&](const Appearance& appearance, SurfaceKind kind) {
+    return registry.FindAlike(appearance, kind, registry.Dormant());
+  };
+  EXPECT_EQ(alike(looks(1), SurfaceKind::kNonRigid), 0);
   registry.SetDormant(id);
-  EXPECT_EQ(registry.FindDormant(looks(1), SurfaceKind::kNonRigid), id);
-  EXPECT_EQ(registry.FindDormant(looks(2), SurfaceKind::kNonRigid), 0);
-  EXPECT_EQ(registry.FindDormant(looks(1), SurfaceKind::kRigid), 0);
+  EXPECT_EQ(alike(looks(1), SurfaceKind::kNonRigid), id);
+  EXPECT_EQ(alike(looks(2), SurfaceKind::kNonRigid), 0);
+  EXPECT_EQ(alike(looks(1), SurfaceKind::kRigid), 0);
   Appearance far_away = looks(1);
   far_away.center[2] += 1.5f;
-  EXPECT_EQ(registry.FindDormant(far_away, SurfaceKind::kNonRigid), 0);
+  EXPECT_EQ(alike(far_away, SurfaceKind::kNonRigid), 0);
+  EXPECT_EQ(registry.FindAlike(looks(1), SurfaceKind::kNonRigid, {}), 0);
 }
 
 }  // namespace

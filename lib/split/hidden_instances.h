@@ -1,0 +1,23 @@
+#ifndef SPLITFUSION_LIB_SPLIT_HIDDEN_INSTANCES_H_
+#define SPLITFUSION_LIB_SPLIT_HIDDEN_INSTANCES_H_
+
+#include <vector>
+
+#include "splitfusion/lib/segmentation/label_table.h"
+#include "splitfusion/lib/split/instance_matcher.h"
+#include "splitfusion/lib/split/instance_registry.h"
+#include "splitfusion/lib/split/split_work.h"
+
+namespace splitfusion {
+
+/// Finds followed surfaces of which the prediction shows hardly anything in
+/// the detections that overlap no surface: somebody comes out from behind
+/// somebody else, where he was not quite predicted. He is known by place, kind
+/// and colour. Adds to `matches`, one a candidate.
+void RecognizeHidden(const std::vector<Candidate>& candidates,
+                     const LabelTable& table, const InstanceRegistry& registry,
+                     const SplitWork& work, std::vector<Match>* matches);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SPLIT_HIDDEN_INSTANCES_H_
