@@ -74,12 +74,14 @@ void CheckMasksFit(const TumReader& reader,
                    const MaskFolderSegmenter& segmenter,
                    const std::string& folder) {
   for (int i = 0; i < reader.size(); ++i) {
-    if (segmenter.Has(reader.Stem(i))) return;
+    if (segmenter.Has(reader.Stem(i)) || segmenter.Has(reader.ColorStem(i))) {
+      return;
+    }
   }
   throw InputError(folder + ": no mask for any of the " +
                    std::to_string(reader.size()) +
                    " frames: expected names by the depth image, such as " +
-                   reader.Stem(0) + ".png");
+                   reader.Stem(0) + ".png, or by the colour image");
 }
 
 std::shared_ptr<Segmenter> MakeSegmenter(const TumReader& reader) {

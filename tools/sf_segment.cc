@@ -67,8 +67,9 @@ class ColorFrames {
     frame.index = index;
     frame.timestamp = pairs_[index].depth.timestamp;
     frame.stem = Stem(index);
-    frame.color = ReadColorImage(
-        (fs::path(FLAGS_sequence) / pairs_[index].color.file).string());
+    const fs::path color = fs::path(FLAGS_sequence) / pairs_[index].color.file;
+    frame.color_stem = color.stem().string();
+    frame.color = ReadColorImage(color.string());
     return frame;
   }
 

@@ -1,10 +1,14 @@
 #include "splitfusion/lib/segmentation/detection_list.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/segmentation/class_names.h"
 
 namespace splitfusion {
 namespace {
@@ -47,6 +51,17 @@ Detection ParseDetection(const std::string& path, const Json& entry,
   return detection;
 }
 
+/// A name as it is, without blanks at its end; that of a COCO number; empty if
+/// there is none.
+std::string NameOfClass(std::string word) {
+  word.erase(word.find_last_not_of(" \t\r") + 1);
+  if (word.find_first_not_of("0123456789") != std::string::npos) return word;
+  const std::vector<std::string>& names = CocoClassNames();
+  const std::size_t number =
+      word.empty() || word.size() > 2 ? 0 : std::stoul(word);
+  return number >= 1 && number <= names.size() ? names[number - 1] : "";
+}
+
 /// To a tenth of a pixel, so that sums of corners and sizes stay short.
 double Tenths(double value) { return std::round(value * 10) / 10; }
 
@@ -57,6 +72,29 @@ std::vector<Detection> ReadDetections(const std::string& path,
   std::vector<Detection> detections;
   for (const Json& entry : ReadJson(path)) {
     detections.push_back(ParseDetection(path, entry, unnamed_class));
+  }
+  return detections;
+}
+
+std::vector<Detection> ReadClassList(const std::string& path) {
+  std::ifstream stream(path);
+  std::vector<Detection> detections;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    line.resize(std::min(line.find('#'), line.size()));
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    std::istringstream words(line);
+    Detection detection;
+    words >> detection.index >> std::ws;
+    std::getline(words, detection.class_name);
+    detection.class_name = NameOfClass(detection.class_name);
+    if (detection.index < 1 || detection.index > 65535 ||
+        detection.class_name.empty()) {
+      throw InputError(path + ":" + std::to_string(number) + ": '" + line +
+                       "': expected an index of 1..65535 and a class, by its "
+                       "name or its COCO number of 1..80");
+    }
+    detections.push_back(std::move(detection));
   }
   return detections;
 }

@@ -29,6 +29,15 @@ inline constexpr char kDetectionListFile[] = "detections.jsonl";
 std::vector<Detection> ReadDetections(const std::string& path,
                                       const std::string& unnamed_class);
 
+/// What follows the stem in the name of a list of classes.
+inline constexpr char kClassListExtension[] = ".classes.txt";
+
+/// Reads `STEM.classes.txt`: lines "INDEX CLASS", where CLASS is a name or the
+/// number of a COCO class, from 1 (person) to 80; `#` begins a comment.
+///
+/// @throw InputError on a broken line, by its number.
+std::vector<Detection> ReadClassList(const std::string& path);
+
 /// Detections by the stem of their frame.
 using DetectionLists = std::map<std::string, std::vector<Detection>>;
 

@@ -94,6 +94,9 @@ std::vector<Detection> MaskFolderSegmenter::DetectionsOf(
     const std::string& stem, const cv::Mat& labels) const {
   const std::string own = (fs::path(folder_) / (stem + ".json")).string();
   if (fs::exists(own)) return ReadDetections(own, unnamed_class_);
+  const std::string classes =
+      (fs::path(folder_) / (stem + kClassListExtension)).string();
+  if (fs::exists(classes)) return ReadClassList(classes);
   if (!lists_) return DetectionsOfValues(labels, unnamed_class_);
   const auto found = lists_->find(stem);
   return found == lists_->end() ? std::vector<Detection>() : found->second;
@@ -108,13 +111,20 @@ bool MaskFolderSegmenter::Has(const std::string& stem) const {
                      });
 }
 
+std::string MaskFolderSegmenter::StemOf(const Frame& frame) const {
+  const bool by_color =
+      !frame.color_stem.empty() && !Has(frame.stem) && Has(frame.color_stem);
+  return by_color ? frame.color_stem : frame.stem;
+}
+
 std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
   std::vector<InstanceMask> instances;
   const fs::path root(folder_);
-  const std::string label_path = (root / (frame.stem + ".png")).string();
+  const std::string stem = StemOf(frame);
+  const std::string label_path = (root / (stem + ".png")).string();
   if (fs::exists(label_path)) {
     const cv::Mat labels = ReadMask(label_path, frame);
-    for (const Detection& detection : DetectionsOf(frame.stem, labels)) {
+    for (const Detection& detection : DetectionsOf(stem, labels)) {
       const cv::Mat mask =
           detection.mask.empty()
               ? cv::Mat(labels == detection.index)
@@ -122,7 +132,7 @@ std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
       AddInstance(mask, detection, &instances);
     }
   }
-  const std::string prefix = frame.stem + "_";
+  const std::string prefix = stem + "_";
   for (const std::string& name : instance_files_) {
     if (name.compare(0, prefix.size(), prefix) != 0) continue;
     AddInstance(ReadMask((root / name).string(), frame) != 0,

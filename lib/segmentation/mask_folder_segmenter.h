@@ -16,10 +16,11 @@ inline constexpr char kUnnamedClass[] = "object";
 inline constexpr char kUnnamedRigidClass[] = "rigid_object";
 
 /// Masks from files, any segmenter's output. Per frame, by the stem of its
-/// depth file, one of
+/// depth file, or of its colour file if there is none by that, one of
 ///  - `STEM.png`, 8 or 16 bit, pixel = index of the detection, 0 = none, with
 ///    `STEM.json` = [{"index", "class", "score", "bbox"}, ...]; pixels of an
 ///    index that the list does not name are left out;
+///  - `STEM.png` with `STEM.classes.txt`, lines "INDEX CLASS";
 ///  - `STEM.png` in a folder with `detections.jsonl`, which lists the
 ///    detections of all frames, one a line: {"stem", "index", "class", "score",
 ///    "box", "mask"}; `mask`, if given, is the file of the whole mask where
@@ -49,6 +50,7 @@ class MaskFolderSegmenter : public Segmenter {
   bool Has(const std::string& stem) const;
 
  private:
+  std::string StemOf(const Frame& frame) const;
   std::vector<Detection> DetectionsOf(const std::string& stem,
                                       const cv::Mat& labels) const;
 

@@ -11,8 +11,9 @@ struct Frame {
   int index = 0;         ///< Position in the sequence, from 0.
   double timestamp = 0;  ///< Of the depth image, seconds.
   std::string stem;      ///< Depth file's name without folder and extension.
-  cv::Mat color;         ///< HxW 8UC3, BGR.
-  cv::Mat depth;         ///< HxW 32FC1, metres, 0 = no measurement.
+  std::string color_stem = {};  ///< The same of the colour file.
+  cv::Mat color;                ///< HxW 8UC3, BGR.
+  cv::Mat depth;                ///< HxW 32FC1, metres, 0 = no measurement.
 };
 
 }  // namespace splitfusion

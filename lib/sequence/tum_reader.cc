@@ -79,6 +79,10 @@ std::string TumReader::Stem(int i) const {
   return fs::path(pairs_.at(i).depth.file).stem().string();
 }
 
+std::string TumReader::ColorStem(int i) const {
+  return fs::path(pairs_.at(i).color.file).stem().string();
+}
+
 std::optional<Frame> TumReader::Next() {
   if (next_ >= size()) return std::nullopt;
   const AssociatedFiles& pair = pairs_[next_];
@@ -88,6 +92,7 @@ std::optional<Frame> TumReader::Next() {
   frame.index = options_.first_frame + next_;
   frame.timestamp = pair.depth.timestamp;
   frame.stem = depth_path.stem().string();
+  frame.color_stem = color_path.stem().string();
   frame.color = ReadColorImage(color_path.string());
   CheckSize(color_path.string(), frame.color);
   const cv::Mat raw = ReadDepthImage(depth_path.string());

@@ -50,6 +50,9 @@ class TumReader : public SequenceReader {
   /// Stem of the depth file of the i-th frame that is read, 0..size() - 1.
   std::string Stem(int i) const;
 
+  /// The same of the colour file.
+  std::string ColorStem(int i) const;
+
   /// Intrinsics and depth scale in use.
   const Calibration& calibration() const { return calibration_; }
 

@@ -88,6 +88,20 @@ TEST_F(MaskFolderSegmenterTest, AFrameWithoutFileHasNoDetections) {
   EXPECT_TRUE(Segment().empty());
 }
 
+TEST_F(MaskFolderSegmenterTest, ReadsClassListsAndNamesByTheColourFile) {
+  frame_.color_stem = "7.25";
+  WriteLabels("7.25.png");
+  folder_.Write("7.25.classes.txt",
+                "# index class\n1 1\n2 63 # none here\n\n3 teddy bear\r\n");
+  const std::vector<InstanceMask> instances = Segment();
+  ASSERT_EQ(instances.size(), 2u);
+  EXPECT_EQ(instances[0].class_name, "person");
+  EXPECT_EQ(cv::countNonZero(instances[0].mask), 4 * 24);
+  EXPECT_EQ(instances[1].class_name, "teddy bear");
+  WriteLabels();  // Names by the depth file come first.
+  EXPECT_EQ(Segment()[0].class_name, "object");
+}
+
 TEST_F(MaskFolderSegmenterTest, NamesBrokenInput) {
   ExpectInputError([&] { Segment(); }, "0 png files");
   ExpectInputError([&] { MaskFolderSegmenter segmenter(folder_ / "none"); },
@@ -100,6 +114,11 @@ TEST_F(MaskFolderSegmenterTest, NamesBrokenInput) {
   folder_.Write("000007.json", "[{\"index\": 1, \"score\": 7}]");
   ExpectInputError([&] { Segment(); }, "score of 0..1");
   std::filesystem::remove(folder_ / "000007.json");
+  for (const char* line : {"1", "0 person", "2 81", "3 0", "person 1"}) {
+    folder_.Write("000007.classes.txt", std::string("1 dog\n") + line);
+    ExpectInputError([&] { Segment(); }, "000007.classes.txt:2");
+  }
+  std::filesystem::remove(folder_ / "000007.classes.txt");
   frame_.color = cv::Mat(48, 64, CV_8UC3);
   ExpectInputError([&] { Segment(); },
                    "000007.png: mask of 32x24: expected 64x48");
