@@ -1,38 +1,54 @@
 #include "splitfusion/lib/split/mask_trimming.h"
 
-#include <algorithm>
+#include <tbb/parallel_for.h>
+
 #include <opencv2/imgproc.hpp>
-#include <utility>
 #include <vector>
 
+#include "splitfusion/lib/geometry/kd_tree.h"
 #include "splitfusion/lib/split/surface_extent.h"
 
 namespace splitfusion {
 namespace {
 
 constexpr float kReach = 0.35f;  // Metres.
+constexpr int kStride = 4;  // Of the points that distances are measured to.
 /// Share of a mask that must be where it was predicted to judge the rest.
 constexpr double kMinPredicted = 0.25;
 
-/// Depths of the `pixels` but for the nearest and farthest 2 %, metres; an
-/// empty range (end before start) if there are none.
-std::pair<float, float> DepthRange(const cv::Mat_<uchar>& pixels,
-                                   const cv::Mat_<float>& depth) {
-  std::vector<float> depths;
-  for (int v = 0; v < pixels.rows; ++v) {
-    for (int u = 0; u < pixels.cols; ++u) {
-      if (pixels(v, u)) depths.push_back(depth(v, u));
+Eigen::Vector3f PointAt(const PointMap& points, int v, int u) {
+  const cv::Vec3f& p = points.points(v, u);
+  return {p[0], p[1], p[2]};
+}
+
+std::vector<Eigen::Vector3f> SparsePoints(const cv::Mat_<uchar>& pixels,
+                                          const PointMap& points) {
+  std::vector<Eigen::Vector3f> sparse;
+  for (int v = 0; v < pixels.rows; v += kStride) {
+    for (int u = 0; u < pixels.cols; u += kStride) {
+      if (pixels(v, u) && points.points(v, u)[2] > 0) {
+        sparse.push_back(PointAt(points, v, u));
+      }
     }
   }
-  if (depths.empty()) return {1, 0};
-  const auto at = [&](double share) {
-    const auto place =
-        depths.begin() + static_cast<int>(share * (depths.size() - 1));
-    std::nth_element(depths.begin(), place, depths.end());
-    return *place;
-  };
-  const float nearest = at(0.02);
-  return {nearest, at(0.98)};
+  return sparse;
+}
+
+/// Pixels of `rest` that are farther than kReach from all `body` points, 255.
+cv::Mat_<uchar> OutOfReach(const cv::Mat_<uchar>& rest,
+                           const std::vector<Eigen::Vector3f>& body,
+                           const PointMap& points) {
+  cv::Mat_<uchar> out(rest.size(), uchar(0));
+  const KdTree tree(body);
+  tbb::parallel_for(0, rest.rows, [&](int v) {
+    for (int u = 0; u < rest.cols; ++u) {
+      if (!rest(v, u)) continue;
+      float distance = 0;
+      tree.Nearest(PointAt(points, v, u), &distance);
+      if (distance > kReach) out(v, u) = 255;
+    }
+  });
+  return out;
 }
 
 cv::Mat_<uchar> ForeignPixels(const Segment& segment, const SplitWork& work) {
@@ -46,11 +62,9 @@ cv::Mat_<uchar> ForeignPixels(const Segment& segment, const SplitWork& work) {
     return {};
   }
   const cv::Mat_<uchar> body = GrowOver(mask, predicted, work.frame.depth);
-  const auto [nearest, farthest] = DepthRange(body, work.frame.depth);
-  if (farthest < nearest) return {};
-  cv::Mat_<uchar> foreign = mask & ~body &
-                            ((work.frame.depth < nearest - kReach) |
-                             (work.frame.depth > farthest + kReach));
+  const std::vector<Eigen::Vector3f> points = SparsePoints(body, work.points);
+  if (points.empty()) return {};
+  cv::Mat_<uchar> foreign = OutOfReach(mask & ~body, points, work.points);
   // A rim of the mask is the graph cut's business.
   cv::morphologyEx(foreign, foreign, cv::MORPH_OPEN,
                    cv::getStructuringElement(cv::MORPH_ELLIPSE, {7, 7}));

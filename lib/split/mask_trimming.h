@@ -7,7 +7,7 @@ namespace splitfusion {
 
 /// Takes out of the masks of known surfaces what is no part of them: pixels
 /// that do not hang together in depth with what was predicted of the surface
-/// and lie nearer or farther than its limbs reach. A detector often gives one
+/// and lie farther from it than a limb reaches. A detector often gives one
 /// person pieces of somebody behind. What is taken out is left to the other
 /// surfaces, or unconfirmed.
 void TrimMasks(SplitWork* work);
