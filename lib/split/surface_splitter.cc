@@ -12,7 +12,6 @@
 #include "splitfusion/lib/split/held_parts.h"
 #include "splitfusion/lib/split/hidden_instances.h"
 #include "splitfusion/lib/split/instance_matcher.h"
-#include "splitfusion/lib/split/mask_trimming.h"
 #include "splitfusion/lib/split/surface_extent.h"
 #include "splitfusion/lib/split/surface_merging.h"
 
@@ -127,7 +126,6 @@ void SurfaceSplitter::CollectSegments(
   work->segments = std::move(sorted.segments);
   work->unconfirmed = sorted.unconfirmed | standing_free;
   work->result.decisions = std::move(sorted.decisions);
-  TrimMasks(work);
 }
 
 cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
