@@ -8,6 +8,9 @@ namespace {
 constexpr double kMovedShare = 0.4;
 constexpr double kMaxClaimed = 0.5;
 
+/// Share from which these pixels are not mapped; fewer are noise.
+constexpr double kNoticedShare = 0.2;
+
 constexpr int kMovedFrames = 5;  // So many ...
 constexpr int kWindow = 8;       // ... of the last so many.
 
@@ -42,8 +45,10 @@ cv::Mat_<uchar> MovingObjects::Watch(const MotionView& view,
     const cv::Mat_<uchar> own = seen & ~view.claimed;
     const cv::Mat_<uchar> moved =
         space_.WasEmpty(own, view.points, view.world_from_camera);
-    standing_free |= moved;
     const int pixels = cv::countNonZero(own);
+    if (cv::countNonZero(moved) >= kNoticedShare * pixels) {
+      standing_free |= moved;
+    }
     if (pixels < options_.min_pixels ||
         pixels < (1 - kMaxClaimed) * cv::countNonZero(seen) ||
         cv::countNonZero(moved) < kMovedShare * pixels) {

@@ -54,11 +54,12 @@ cv::Mat_<uchar> SeenSpace::WasEmpty(const cv::Mat_<uchar>& mask,
                                     const PointMap& points,
                                     const Rigid3d& world_from_camera) const {
   cv::Mat_<uchar> empty(mask.size(), uchar(0));
+  const cv::Rect box = cv::boundingRect(mask);
   const Rigid3f world_from_live = world_from_camera.cast<float>();
   for (const View& view : views_) {
     const Rigid3f view_from_live = view.camera_from_world * world_from_live;
-    for (int v = 0; v < mask.rows; ++v) {
-      for (int u = 0; u < mask.cols; ++u) {
+    for (int v = box.y; v < box.br().y; ++v) {
+      for (int u = box.x; u < box.br().x; ++u) {
         const cv::Vec3f& p = points.points(v, u);
         if (!mask(v, u) || empty(v, u) || p[2] <= 0) continue;
         const Eigen::Vector3f point(p[0], p[1], p[2]);
