@@ -67,16 +67,21 @@ void CheckWritable(const std::string& path) {
   if (!std::ofstream(path)) throw InputError(path + ": cannot be written");
 }
 
+/// Of a process whose status somebody else took (SIGCHLD is ignored).
+constexpr int kUnknownExit = 255;
+
 int WaitFor(pid_t pid, const StopRequest& stop) {
   int status = 0;
   bool told = false;
-  while (waitpid(pid, &status, WNOHANG) == 0) {
+  pid_t ended = 0;
+  while ((ended = waitpid(pid, &status, WNOHANG)) == 0) {
     if (!told && stop && stop()) {
       kill(pid, SIGINT);
       told = true;
     }
     std::this_thread::sleep_for(kPollInterval);
   }
+  if (ended != pid) return kUnknownExit;
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 

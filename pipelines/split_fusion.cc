@@ -161,7 +161,8 @@ bool SplitFusion::IsHidden(SurfaceReport* report) {
       Exposure(rendering_, options_.render_stride, live_, report->id);
   constexpr double kBack = 1.2;  // More must be seen to come back.
   const bool was_hidden = hidden_.count(report->id) > 0;
-  if (exposure >= (was_hidden ? kBack : 1) * options_.min_exposure)
+  if (exposure >=
+      std::min(1.0, (was_hidden ? kBack : 1) * options_.min_exposure))
     return false;
   hidden_.insert(report->id);
   report->reason = std::to_string(static_cast<int>(100 * exposure)) +
@@ -200,7 +201,10 @@ void SplitFusion::Reacquire(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
   if (!PlaceWhereSeen(surface, report)) return;
   TrackObject(surface, report);
-  if (report->state == "lost") *surface->mutable_graph() = before;
+  if (report->state != "lost") return;
+  *surface->mutable_graph() = before;
+  rendering_ =
+      RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
 }
 
 void SplitFusion::Fuse(FrameReport* report) {
@@ -298,7 +302,10 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
     const auto found = surfaces_.find(id);
-    if (found == surfaces_.end()) continue;  // Dropped or merged.
+    // What was dropped or merged is no more, even if it was born anew.
+    const bool gone =
+        surface_report.state == "dropped" || surface_report.state == "merged";
+    if (gone || found == surfaces_.end()) continue;
     Surface& surface = *found->second;
     const auto seen = pixels.find(id);
     surface_report.pixels = seen == pixels.end() ? 0 : seen->second;

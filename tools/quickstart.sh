@@ -5,6 +5,10 @@
 # runs/quickstart, which a later run replaces.
 #   tools/quickstart.sh [further flags of sf_run, such as --preset=cofusion]
 set -euo pipefail
+if [[ "${1:-}" == -h || "${1:-}" == --help ]]; then
+  sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/install_deps.sh

@@ -26,6 +26,18 @@ std::vector<std::string> ListFiles(const std::string& folder,
   return names;
 }
 
+bool ListsDetections(const std::string& folder) {
+  const std::string classes = kClassListExtension;
+  const std::vector<std::string> texts = ListFiles(folder, ".txt");
+  return fs::exists(fs::path(folder) / kDetectionListFile) ||
+         !ListFiles(folder, ".json").empty() ||
+         std::any_of(texts.begin(), texts.end(), [&](const std::string& name) {
+           return name.size() > classes.size() &&
+                  name.compare(name.size() - classes.size(), classes.size(),
+                               classes) == 0;
+         });
+}
+
 std::vector<Detection> DetectionsOfValues(const cv::Mat& labels,
                                           const std::string& unnamed_class) {
   std::set<int> values(labels.begin<std::uint16_t>(),
@@ -78,7 +90,7 @@ MaskFolderSegmenter::MaskFolderSegmenter(const std::string& folder,
   if (instance_files_.empty()) {
     throw InputError(folder +
                      ": 0 png files: expected masks named after the "
-                     "depth files");
+                     "depth or colour files");
   }
   instance_files_.erase(
       std::remove_if(instance_files_.begin(), instance_files_.end(),
@@ -148,9 +160,7 @@ std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
 
 std::string FindMaskFolder(const std::string& sequence) {
   const fs::path detected = fs::path(sequence) / "masks_noisy";
-  if (fs::is_directory(detected) &&
-      (fs::exists(detected / kDetectionListFile) ||
-       !ListFiles(detected.string(), ".json").empty())) {
+  if (fs::is_directory(detected) && ListsDetections(detected.string())) {
     return detected.string();
   }
   const fs::path plain = fs::path(sequence) / "mask";

@@ -63,7 +63,7 @@ class MaskFolderSegmenter : public Segmenter {
 };
 
 /// The masks found beside a sequence: `masks_noisy` if it holds detections
-/// (a json or jsonl file), else `mask`, else an empty string.
+/// (a json, jsonl or classes.txt file), else `mask`, else an empty string.
 std::string FindMaskFolder(const std::string& sequence);
 
 }  // namespace splitfusion

@@ -223,6 +223,17 @@ TEST(SplitFusion, AMostlyHiddenPersonIsCarriedOnAndComesBack) {
   EXPECT_LT(grown, 1.3 * vertices);
 }
 
+TEST(SplitFusion, HiddenSurfacesComeBackAtAnyMinimum) {
+  SyntheticOptions scene = SyntheticRun::Quick();
+  PipelineOptions options;
+  options.min_exposure = 1;
+  SyntheticRun run(scene, options);
+  for (int i = 0; i < 3; ++i) run.Next();
+  const int person = PersonId(run.fusion());
+  EXPECT_EQ(StateOf(run.Next(HideBehindBoard), person), "hidden");
+  EXPECT_EQ(StateOf(run.Next(), person), "tracked");
+}
+
 TEST(SplitFusion, BeginsWithTheFirstFrameThatHasDepth) {
   SyntheticRun run(SyntheticRun::Quick());
   const FrameReport blind = run.Next(

@@ -55,6 +55,21 @@ TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
   EXPECT_EQ(person.hidden, std::vector<int>{4});
 }
 
+TEST(SummaryBuilder, ADroppedSurfaceBeginsAnew) {
+  SummaryBuilder builder;
+  for (int frame = 0; frame < 3; ++frame) builder.Add(SampleReport(frame));
+  FrameReport anew = SampleReport(3);
+  SurfaceReport born = anew.surfaces[1];
+  anew.surfaces[1].state = "dropped";
+  born.state = "born";
+  anew.surfaces.push_back(born);
+  builder.Add(anew);
+  const RunSummary summary = builder.Build();
+  ASSERT_EQ(summary.surfaces.size(), 2u);
+  EXPECT_EQ(summary.surfaces[1].first_frame, 3);
+  EXPECT_EQ(summary.surfaces[1].frames, 1);
+}
+
 TEST(SummaryBuilder, TakesTheSpacingOfTheLastGraph) {
   SummaryBuilder builder;
   for (const double spacing : {0.04, 0.05}) {

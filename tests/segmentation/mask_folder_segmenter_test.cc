@@ -129,6 +129,14 @@ TEST_F(MaskFolderSegmenterTest, RefusesColourMasks) {
   ExpectInputError([&] { Segment(); }, "expected a label image");
 }
 
+TEST(FindMaskFolder, KnowsClassLists) {
+  TemporaryFolder folder;
+  folder.Write("masks_noisy/readme.txt", "");
+  EXPECT_EQ(FindMaskFolder(folder / ""), "");
+  folder.Write("masks_noisy/7.classes.txt", "1 person\n");
+  EXPECT_NE(FindMaskFolder(folder / "").find("masks_noisy"), std::string::npos);
+}
+
 TEST(FindMaskFolder, PrefersDetections) {
   const TemporaryFolder folder;
   EXPECT_EQ(FindMaskFolder(folder / ""), "");

@@ -24,5 +24,10 @@ for argument in "$@"; do
     *) refuse "$argument: unknown argument; see --help" ;;
   esac
 done
+model="${SPLITFUSION_MODEL:-}"
+[[ -z "$model" || -r "$model" ]] || refuse "--model=$model: cannot be read"
 "$root/tools/build_release.sh" --target sf_benchmark
-"$root/build/release/bin/sf_benchmark" "${arguments[@]}"
+log="$(mktemp)"
+trap 'rm -f "$log"' EXIT
+"$root/build/release/bin/sf_benchmark" "${arguments[@]}" 2>&1 | tee "$log"
+if grep -q "Failed to match" "$log"; then refuse "--filter matches nothing"; fi
