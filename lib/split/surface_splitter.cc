@@ -12,6 +12,7 @@
 #include "splitfusion/lib/split/held_parts.h"
 #include "splitfusion/lib/split/hidden_instances.h"
 #include "splitfusion/lib/split/instance_matcher.h"
+#include "splitfusion/lib/split/loose_parts.h"
 #include "splitfusion/lib/split/surface_extent.h"
 #include "splitfusion/lib/split/surface_merging.h"
 
@@ -83,6 +84,7 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
   CutSegments(&work);
   work.segment_labels =
       ComposeSegments(work.segments, work.prior.labels, frame.depth);
+  ClaimLooseParts(registry_, &work);
   SettleSurfaces(&work);
   SettleNewcomers(&work);
   MergeCoveredSurfaces(options_.min_contact, &registry_, &work);
