@@ -11,13 +11,14 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kMinPixels = 40;     // Fewer are noise.
-constexpr double kMaxShare = 0.5;  // Of the body's pixels: it is a part.
-constexpr float kReach = 0.45f;    // Metres: head to chest, hand to hip.
-constexpr float kInFront = 0.10f;  // Metres, of what hides the connection.
-constexpr float kJump = 0.15f;     // Metres between neighbours.
-constexpr int kGap = 9;            // Pixels without depth beside an edge.
-constexpr int kPointStride = 4;    // Pixels between compared points.
+constexpr int kMinPixels = 40;        // Fewer are noise.
+constexpr double kMaxShare = 0.5;     // Of the body's pixels: it is a part.
+constexpr double kMaxUnmapped = 0.3;  // Of the pixels with depth.
+constexpr float kReach = 0.45f;       // Metres: head to chest, hand to hip.
+constexpr float kInFront = 0.10f;     // Metres, of what hides the connection.
+constexpr float kJump = 0.15f;        // Metres between neighbours.
+constexpr int kGap = 9;               // Pixels without depth beside an edge.
+constexpr int kPointStride = 4;       // Pixels between compared points.
 
 /// A patch of the image: its pixels (HxW, 255) and the points of some of them.
 struct Patch {
@@ -98,11 +99,22 @@ float Distance(const Patch& a, const Patch& b) {
   return std::sqrt(least);
 }
 
+/// Whether the patch is a mere strip along the border: most of what it is a
+/// part of is out of sight.
+bool IsStripAtBorder(const Patch& patch) {
+  const cv::Size size = patch.pixels.size();
+  cv::Mat at_border = patch.pixels.clone();
+  at_border(cv::Rect(kGap, kGap, size.width - 2 * kGap, size.height - 2 * kGap))
+      .setTo(0);
+  const double length = cv::countNonZero(at_border) / kGap;
+  return length * length > patch.count;
+}
+
 /// What a piece can belong to.
 struct Body {
   int segment = 0;  // 1 + index.
   Patch patch;
-  bool at_border = false;
+  bool strip = false;    // Along the border of the image.
   std::set<int> behind;  // Segments in front of it.
 };
 
@@ -120,7 +132,7 @@ std::vector<Body> FindBodies(const InstanceRegistry& registry,
               false,
               {}};
     if (body.patch.points.empty()) continue;
-    body.at_border = AtBorder(body.patch.box, body.patch.pixels.size());
+    body.strip = IsStripAtBorder(body.patch);
     body.behind = InFrontOf(body.patch, work);
     bodies.push_back(std::move(body));
   }
@@ -130,7 +142,7 @@ std::vector<Body> FindBodies(const InstanceRegistry& registry,
 /// Whether what connects piece and body can be out of sight.
 bool CanBeConnected(bool at_border, const std::set<int>& behind,
                     const Body& body) {
-  if (at_border && body.at_border) return true;
+  if (at_border && body.strip) return true;
   return std::any_of(behind.begin(), behind.end(), [&](int segment) {
     return segment != body.segment && body.behind.count(segment) > 0;
   });
@@ -156,6 +168,13 @@ int FindOwner(const Patch& piece, const std::vector<Body>& bodies,
   return owner;
 }
 
+/// Whether most of the room in view is mapped: else anything may be new.
+bool IsMapped(const SplitWork& work) {
+  const cv::Mat measured = work.frame.depth > 0;
+  return cv::countNonZero(UnmappedPixels(work.compared) & measured) <
+         kMaxUnmapped * cv::countNonZero(measured);
+}
+
 /// Whether the depth jumps between a pixel and its neighbours.
 cv::Mat_<uchar> DepthJumps(const cv::Mat_<float>& depth) {
   cv::Mat_<float> far, near, known = depth.clone();
@@ -165,20 +184,41 @@ cv::Mat_<uchar> DepthJumps(const cv::Mat_<float>& depth) {
   return far - near > kJump;
 }
 
-/// Pixels that nothing claims and no background is known to explain, cut where
-/// the depth jumps, with holes in it closed, and without single ones.
-cv::Mat_<uchar> Unclaimed(const SplitWork& work) {
+/// Pixels without a claim; of these `open` those that no background is known to
+/// explain.
+struct Unclaimed {
+  cv::Mat_<uchar> free;
+  cv::Mat_<uchar> open;
+};
+
+Unclaimed FindUnclaimed(const SplitWork& work) {
   const cv::Mat& depth = work.frame.depth;
-  const cv::Mat free = (work.segment_labels == 0) & ~work.unconfirmed &
-                       ~MasksBut(-1, work.segments, depth.size());
-  const cv::Mat open = (UnexplainedPixels(0, work.compared) |
-                        (UnmappedPixels(work.compared) & (depth > 0))) &
-                       free & ~DepthJumps(depth);
+  Unclaimed found;
+  found.free = (work.segment_labels == 0) & ~work.unconfirmed &
+               ~MasksBut(-1, work.segments, depth.size());
+  found.open = (UnexplainedPixels(0, work.compared) |
+                (UnmappedPixels(work.compared) & (depth > 0))) &
+               found.free;
+  return found;
+}
+
+/// The open pixels, cut where the depth jumps, with holes in the depth closed,
+/// and without single ones.
+cv::Mat_<uchar> Pieces(const Unclaimed& unclaimed, const cv::Mat& depth) {
+  const cv::Mat smooth = unclaimed.open & ~DepthJumps(depth);
   cv::Mat closed, cleaned;
-  cv::morphologyEx(open, closed, cv::MORPH_CLOSE, cv::Mat::ones(5, 5, CV_8U));
-  closed &= open | (free & (depth == 0));
+  cv::morphologyEx(smooth, closed, cv::MORPH_CLOSE, cv::Mat::ones(5, 5, CV_8U));
+  closed &= smooth | (unclaimed.free & (depth == 0));
   cv::morphologyEx(closed, cleaned, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
   return cleaned;
+}
+
+/// The piece with the rim that was cut off at jumps of the depth.
+cv::Mat_<uchar> WithRim(const cv::Mat_<uchar>& piece,
+                        const cv::Mat_<uchar>& open) {
+  cv::Mat_<uchar> grown;
+  cv::dilate(piece, grown, cv::Mat::ones(3, 3, CV_8U));
+  return piece | (grown & open);
 }
 
 /// Whether the piece does not hang together with the mapped background.
@@ -194,11 +234,12 @@ bool StandsFree(const Patch& piece, const SplitWork& work) {
 }  // namespace
 
 void ClaimLooseParts(const InstanceRegistry& registry, SplitWork* work) {
-  const cv::Mat_<uchar> unclaimed = Unclaimed(*work);
+  if (!IsMapped(*work)) return;
+  const Unclaimed unclaimed = FindUnclaimed(*work);
   cv::Mat_<int> pieces;
   cv::Mat stats, centroids;
-  const int count =
-      cv::connectedComponentsWithStats(unclaimed, pieces, stats, centroids);
+  const int count = cv::connectedComponentsWithStats(
+      Pieces(unclaimed, work->frame.depth), pieces, stats, centroids);
   std::vector<Body> bodies;
   for (int i = 1; i < count; ++i) {
     const cv::Rect box(stats.at<int>(i, cv::CC_STAT_LEFT),
@@ -215,7 +256,7 @@ void ClaimLooseParts(const InstanceRegistry& registry, SplitWork* work) {
     const int owner = FindOwner(piece, bodies, *work);
     if (owner > 0 && StandsFree(piece, *work)) {
       work->segment_labels.setTo(static_cast<std::uint16_t>(owner),
-                                 piece.pixels);
+                                 WithRim(piece.pixels, unclaimed.open));
     }
   }
 }

@@ -12,8 +12,9 @@ namespace splitfusion {
 ///
 /// A piece is a patch in front of the mapped background that nothing claims. It
 /// belongs to the nearest non-rigid surface, if that is near in space and what
-/// connects the two can be out of sight: both end at the border of the image,
-/// or both at something nearer. Whatever stands alone in plain view belongs to
+/// connects the two can be out of sight: the body is a mere strip along the
+/// border of the image, at which the piece ends too, or both end at something
+/// nearer. Whatever stands alone in plain view belongs to
 /// nobody. Changes `segment_labels`.
 void ClaimLooseParts(const InstanceRegistry& registry, SplitWork* work);
 

@@ -9,9 +9,9 @@
 namespace splitfusion {
 namespace {
 
-constexpr double kDepth = 2.0;            // Of the body, metres.
-const cv::Rect kBody(140, 40, 20, 60);    // Ends at the right border.
-const cv::Rect kHead(148, 20, 12, 14);    // So does this; 9 cm above.
+constexpr double kDepth = 2.0;          // Of the body, metres.
+const cv::Rect kBody(140, 40, 20, 60);  // Ends at the right border.
+const cv::Rect kHead(148, 20, 12, 14);  // So does this; 9 cm above.
 
 /// A wall that is mapped, and surface 1, of which the cards named are found.
 class LoosePartsTest : public testing::Test {
@@ -68,6 +68,12 @@ TEST_F(LoosePartsTest, WhereNothingIsMappedYetToo) {
 TEST_F(LoosePartsTest, WhatStandsAloneInPlainViewBelongsToNobody) {
   LayeredScene scene;
   scene.Add({80, 40, 30, 60}, kDepth, 1).Add({84, 20, 12, 14}, kDepth, 2);
+  EXPECT_EQ(Claimed(&scene, 2), 0);
+}
+
+TEST_F(LoosePartsTest, WhoIsInViewIsNoStripOfWhichPiecesAreMissing) {
+  LayeredScene scene;
+  scene.Add({60, 20, 40, 100}, kDepth, 1).Add({110, 100, 15, 20}, kDepth, 2);
   EXPECT_EQ(Claimed(&scene, 2), 0);
 }
 
