@@ -18,6 +18,7 @@ constexpr float kReach = 0.45f;       // Metres: head to chest, hand to hip.
 constexpr float kInFront = 0.10f;     // Metres, of what hides the connection.
 constexpr float kJump = 0.15f;        // Metres between neighbours.
 constexpr int kGap = 9;               // Pixels without depth beside an edge.
+constexpr double kMaxStrip = 0.06;    // Of the image: width of a strip.
 constexpr int kPointStride = 4;       // Pixels between compared points.
 
 /// A patch of the image: its pixels (HxW, 255) and the points of some of them.
@@ -107,7 +108,7 @@ bool IsStripAtBorder(const Patch& patch) {
   at_border(cv::Rect(kGap, kGap, size.width - 2 * kGap, size.height - 2 * kGap))
       .setTo(0);
   const double length = cv::countNonZero(at_border) / kGap;
-  return length * length > patch.count;
+  return patch.count < std::min(length, kMaxStrip * size.width) * length;
 }
 
 /// What a piece can belong to.
