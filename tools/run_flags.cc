@@ -245,7 +245,8 @@ std::string FlagfileText() {
     // --output=NEW repeats it.
     if (flag.name == "output" || flag.name == "overwrite") continue;
     const bool ours = file == "sf_run.cc" || file == "run_flags.cc" ||
-                      file == "network_flags.cc" || file == "sequence_flags.cc";
+                      file == "mask_flags.cc" || file == "network_flags.cc" ||
+                      file == "sequence_flags.cc";
     if (ours) text += "--" + flag.name + "=" + flag.current_value + "\n";
   }
   return text;

@@ -83,6 +83,18 @@ TEST_F(MaskFolderSegmenterTest, ReadsOneFilePerInstance) {
   EXPECT_EQ(cv::countNonZero(instances[2].mask), 12 * 24);
 }
 
+TEST_F(MaskFolderSegmenterTest, NamesTheClassesOfAFrame) {
+  using Classes = std::set<std::string>;
+  WriteLabels();
+  WriteLabels("000008_teddy_bear_2.png");
+  const MaskFolderSegmenter segmenter(folder_ / "");
+  EXPECT_EQ(segmenter.ClassesOf("000007"), Classes{});
+  EXPECT_EQ(segmenter.ClassesOf("000008"), Classes{"teddy bear"});
+  EXPECT_EQ(segmenter.ClassesOf("000009"), Classes{});
+  folder_.Write("000007.classes.txt", "1 robot\n2 1\n");
+  EXPECT_EQ(segmenter.ClassesOf("000007"), (Classes{"person", "robot"}));
+}
+
 TEST_F(MaskFolderSegmenterTest, AFrameWithoutFileHasNoDetections) {
   WriteLabels("000001.png");
   EXPECT_TRUE(Segment().empty());
