@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "support/expect_refused.h"
 #include "support/program.h"
 #include "support/temporary_folder.h"
+#include "tools/sf_run_fixture.h"
 
 namespace splitfusion {
 namespace {
@@ -34,32 +34,6 @@ std::vector<std::string> Poses(const std::string& text) {
   }
   return lines;
 }
-
-class SfRun : public ::testing::Test {
- protected:
-  void SetUp() override {
-    for (const char* program : {"sf_synth", "sf_run", "sf_evaluate"}) {
-      if (!HasProgram(program)) GTEST_SKIP() << program << " is not built";
-    }
-  }
-
-  /// A tiny sequence of four frames in the folder `sequence`.
-  void Synthesize() const {
-    const ProgramResult result =
-        RunProgram("sf_synth", "--width=160 --height=120 --frames=4 --output=" +
-                                   (folder_ / "sequence"));
-    ASSERT_EQ(result.exit_code, 0) << result.errors;
-  }
-
-  ProgramResult Run(const std::string& output,
-                    const std::string& arguments = "") const {
-    return RunProgram("sf_run", "--sequence=" + (folder_ / "sequence") +
-                                    " --output=" + (folder_ / output) + " " +
-                                    arguments);
-  }
-
-  TemporaryFolder folder_;
-};
 
 TEST_F(SfRun, WritesWhatTheContractNames) {
   Synthesize();
@@ -131,96 +105,6 @@ TEST_F(SfRun, IsEvaluatedAndRepeatedByItsOwnFlagfile) {
     EXPECT_FALSE(folder_.Read("run" + name).empty()) << file;
     EXPECT_EQ(folder_.Read("again" + name), folder_.Read("run" + name)) << file;
   }
-}
-
-TEST_F(SfRun, FramesWithoutDepthArePassedOverAndNamed) {
-  Synthesize();
-  std::vector<fs::path> images;
-  for (const auto& entry : fs::directory_iterator(folder_ / "sequence/depth")) {
-    images.push_back(entry.path());
-  }
-  std::sort(images.begin(), images.end());
-  const auto blacken = [&](std::size_t i) {
-    cv::imwrite(images[i].string(), cv::Mat::zeros(120, 160, CV_16UC1));
-  };
-  blacken(0);
-  blacken(1);
-  const std::string stem = images[0].stem().string();
-  const ProgramResult late = Run("late", "--pictures_every=0");
-  EXPECT_EQ(late.exit_code, 0);
-  EXPECT_THAT(late.errors,
-              HasSubstr("frame 0, " + stem +
-                        ": no background to begin with: expected depth from "
-                        "0.4 to 5 m (--min_depth, --max_depth, --depth_scale); "
-                        "passed over until there is\n"));
-  EXPECT_THAT(late.errors, testing::Not(HasSubstr("frame 1, ")));
-  EXPECT_TRUE(folder_.Has("late/surfaces/000_background/mesh.ply"));
-  EXPECT_EQ(LineCount(folder_.Read("late/frames.jsonl")), 4);
-  blacken(2);
-  blacken(3);
-  const ProgramResult dark = Run("dark", "--pictures_every=0");
-  EXPECT_EQ(dark.exit_code, 2);
-  EXPECT_THAT(dark.errors, HasSubstr("sequence: nothing to reconstruct in any "
-                                     "of 4 frames: expected depth from 0.4"));
-  EXPECT_EQ(LineCount(folder_.Read("dark/frames.jsonl")), 4);
-  EXPECT_TRUE(folder_.Has("dark/summary.json"));
-}
-
-TEST_F(SfRun, WarnsWhereMasksAreMissing) {
-  Synthesize();
-  const std::string flags = "--max_frames=2 --pictures_every=0 ";
-  fs::path left_out;
-  for (const auto& entry :
-       fs::directory_iterator(folder_ / "sequence/masks_noisy")) {
-    const bool is_mask = entry.path().extension() == ".png";
-    if (is_mask) left_out = std::max(left_out, entry.path());
-  }
-  fs::remove(left_out);
-  const ProgramResult fewer = Run("fewer", "--pictures_every=0");
-  EXPECT_EQ(fewer.exit_code, 0);
-  EXPECT_THAT(fewer.errors,
-              HasSubstr("sequence/masks_noisy: masks of 3 of 4 frames; in the "
-                        "others nothing is detected\n"));
-  const std::string none = "no masks found: neither ";
-  EXPECT_THAT(Run("all", flags).errors, testing::Not(HasSubstr("masks")));
-  fs::remove_all(folder_ / "sequence/masks_noisy");
-  fs::remove_all(folder_ / "sequence/mask");
-  const ProgramResult auto_masks = Run("auto", flags);
-  EXPECT_EQ(auto_masks.exit_code, 0);
-  EXPECT_THAT(auto_masks.errors,
-              AllOf(HasSubstr(none), HasSubstr("sequence/mask; only the "
-                                               "background is reconstructed; "
-                                               "use --masks or --model\n")));
-  for (const char* quiet : {"--masks=none", "--preset=kinectfusion"}) {
-    const ProgramResult result = Run("auto", flags + "--overwrite " + quiet);
-    EXPECT_EQ(result.exit_code, 0);
-    EXPECT_THAT(result.errors, testing::Not(HasSubstr(none))) << quiet;
-  }
-}
-
-TEST_F(SfRun, WarnsOfClassesToMergeThatNothingKnows) {
-  Synthesize();
-  const std::string flags = "--max_frames=1 --pictures_every=0 --overwrite ";
-  const std::string warning = "--merge_touching: no label table, ";
-  const auto said = [&](const std::string& more) {
-    const ProgramResult result = Run("run", flags + more);
-    EXPECT_EQ(result.exit_code, 0);
-    return result.errors;
-  };
-  EXPECT_THAT(said("--merge_touching='person+teddybear,cat+robot,dog+cat'"),
-              HasSubstr(warning + "network or mask knows 'robot', "
-                                  "'teddybear'\n"));
-  const std::string labels = folder_.Write("labels.txt", "robot, rigid\n");
-  EXPECT_THAT(said("--merge_touching=person+robot --labels=" + labels),
-              testing::Not(HasSubstr(warning)));
-  for (const auto& entry :
-       fs::directory_iterator(folder_ / "sequence/masks_noisy")) {
-    if (entry.path().extension() != ".json") continue;
-    folder_.Write("sequence/masks_noisy/" + entry.path().filename().string(),
-                  R"([{"index": 1, "class": "robot"}])");
-  }
-  EXPECT_THAT(said("--merge_touching=person+robot"),
-              testing::Not(HasSubstr(warning)));
 }
 
 TEST_F(SfRun, ABrokenFrameEndsTheRunAndKeepsWhatWasComputed) {
