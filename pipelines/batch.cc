@@ -113,8 +113,8 @@ class BatchQueue {
 
   std::optional<std::size_t> Take() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (failure_ || next_ == plan_.size() || (stop_ && stop_()))
-      return std::nullopt;
+    const bool stopped = stop_ && stop_() != Stop::kNo;
+    if (failure_ || next_ == plan_.size() || stopped) return std::nullopt;
     return next_++;
   }
 

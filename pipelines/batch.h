@@ -27,8 +27,8 @@ using BatchCallback = std::function<void(const BatchProgress&)>;
 /// that fails is recorded and the batch goes on; a finished one (its
 /// summary.json is there) is kept unless `overwrite`. The summary files of the
 /// batch are brought up to date after every run. Once `stop` (may be empty; may
-/// be asked from any thread) says true, what runs is asked to stop and recorded
-/// as it ends, and no further run is started.
+/// be asked from any thread) says so, what runs is asked to stop or killed, and
+/// recorded as it ends, and no further run is started.
 ///
 /// @return one result a run that was started or kept, in the order of the plan.
 /// @throw InputError as PlanBatch, or if the output cannot be written.

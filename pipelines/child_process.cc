@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -72,13 +73,12 @@ constexpr int kUnknownExit = 255;
 
 int WaitFor(pid_t pid, const StopRequest& stop) {
   int status = 0;
-  bool told = false;
+  Stop told = Stop::kNo;
   pid_t ended = 0;
   while ((ended = waitpid(pid, &status, WNOHANG)) == 0) {
-    if (!told && stop && stop()) {
-      kill(pid, SIGINT);
-      told = true;
-    }
+    const Stop wanted = stop ? stop() : Stop::kNo;
+    if (wanted > told) kill(pid, wanted == Stop::kAtOnce ? SIGKILL : SIGINT);
+    told = std::max(told, wanted);
     std::this_thread::sleep_for(kPollInterval);
   }
   if (ended != pid) return kUnknownExit;

@@ -14,13 +14,20 @@ struct ChildResult {
   std::string last_error_line;  ///< Last line on stderr that is not empty.
 };
 
-/// Asked now and then while a child runs: whether it should stop.
-using StopRequest = std::function<bool()>;
+/// Whether something that runs should stop.
+enum class Stop {
+  kNo,         ///< It should go on.
+  kWhenReady,  ///< After it has written what it has.
+  kAtOnce,     ///< Whatever is lost by it.
+};
+
+/// Asked now and then while a child runs.
+using StopRequest = std::function<Stop()>;
 
 /// Runs a program without a shell, waits for it, and captures what it says. The
 /// child is in a process group of its own, so that Ctrl-C on the terminal does
-/// not reach it; once `stop` (may be empty) says true it gets one SIGINT, and
-/// is waited for as before.
+/// not reach it; once `stop` (may be empty) says kWhenReady it gets one SIGINT,
+/// and is waited for as before; at kAtOnce it is killed.
 ///
 /// @param arguments the program's path, then its arguments.
 /// @param log base path: stdout goes to `log`.log, stderr to `log`.err.log.

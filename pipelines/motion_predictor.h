@@ -18,7 +18,8 @@ enum class Placement {
 
 /// Predicts the rigid motion of one surface over the next frame.
 ///
-/// A tracked surface keeps the velocity of its last frame. A hidden one is
+/// A tracked surface keeps the velocity of its last frame; after frames without
+/// tracking, its mean velocity since it was tracked last. A hidden one is
 /// carried on with the median translation of its centre over the last frames
 /// in which it was tracked: its last motions before it vanished were estimated
 /// from a strip of it, and their error would be repeated in every frame.
@@ -37,8 +38,11 @@ class MotionPredictor {
                    const Eigen::Vector3d& center, Placement placement);
   Rigid3d UsualStep() const;
 
-  std::optional<Rigid3d> last_;  // World from canonical.
-  Placement last_placement_ = Placement::kNotTracked;
+  // Where live pixels last placed it, world from canonical; none once it was
+  // carried on without.
+  std::optional<Rigid3d> known_;
+  int frames_since_ = 0;  // Since it was placed there.
+  bool begun_ = false;    // Whether any frame was recorded.
   Rigid3d velocity_ = Rigid3d::Identity();
   std::deque<Eigen::Vector3d> steps_;  // Of the centre, world, metres.
 };

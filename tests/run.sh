@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/install_deps.sh
-tools/build_release.sh -DSPLITFUSION_WERROR=ON
+tools/build_release.sh
 
 log=build/release/tests.log
 SECONDS=0

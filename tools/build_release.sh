@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Configures and builds the release preset into build/release.
 #   tools/build_release.sh [-DOPTION=VALUE ...] [--target NAME ...]
+# Warnings are errors, so that whoever calls this builds everything once.
 # On a terminal the tools speak for themselves; otherwise only warnings, errors
 # and one closing line are printed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-configure_arguments=()
+configure_arguments=(-DSPLITFUSION_WERROR=ON)
 while (($#)) && [[ "$1" == -D* ]]; do
   configure_arguments+=("$1")
   shift

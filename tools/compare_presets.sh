@@ -9,7 +9,7 @@
 #   summary.csv, table.md            every figure; the table
 # All presets are judged at the same reference frame of the tracks, the one in
 # which most true points are visible. Exit status as sf_batch: 0 done, 2 bad
-# usage, 3 if a run failed (its row is there). SPLITFUSION_BIN: folder of the
+# usage, 3 if a run failed (its row is there, unless all did). SPLITFUSION_BIN: folder of the
 # programs, if not build/release/bin.
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -50,6 +50,23 @@ write_options() {
     printf '%s\n' "--preset=$preset" "${flags[@]}" >"$file"
     option_files+=("$file")
   done
+}
+
+# sf_run looks at its flags before it looks for its sequence: here there is none.
+check_flags() {
+  local file said none="$output/options/no-sequence"
+  for file in "${option_files[@]}"; do
+    said="$("$bin/sf_run" --flagfile="$file" --sequence="$none" \
+      --output="$none" 2>&1 >/dev/null)" ||
+      [[ "$said" == *"$none: no such folder"* ]] || refuse "${said##*$'\n'}"
+  done
+}
+
+# A message may hold commas, but comes after the columns that are looked at.
+some_run_finished() {
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "error") column = i }
+           NR > 1 && $column == "" { found = 1 }
+           END { exit !found }' "$output/summary.csv"
 }
 
 # Figures are counted from the end of a row: a message before them may hold
@@ -101,10 +118,16 @@ write_pictures() {
 }
 
 write_options
+check_flags
 status=0
 "$bin/sf_batch" --sequences="$(join "${sequences[@]}")" --output="$output" \
   --options="$(join "${option_files[@]}")" >"$output/batch.log" || status=$?
 ((status == 0 || status == 3)) || exit "$status"
+if ! some_run_finished; then
+  echo "compare_presets.sh: every run failed; see $output/summary.csv and the" \
+    "*.err.log files beside" >&2
+  exit "$status"
+fi
 
 print_table | tee "$output/table.md"
 echo

@@ -5,23 +5,40 @@
 namespace splitfusion {
 namespace {
 
-// A signal handler can reach nothing else.
-volatile std::sig_atomic_t interrupted = 0;
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
-void Interrupt(int signal) {
-  interrupted = 1;
-  std::signal(signal, SIG_DFL);
+// A signal handler can reach nothing else.
+volatile std::sig_atomic_t to_catch = 0;
+volatile std::sig_atomic_t caught = 0;
+
+/// Runs with all of kSignals blocked.
+void Interrupt(int /*signal*/) {
+  caught = caught + 1;
+  if (caught < to_catch) return;
+  for (const int signal : kSignals) {
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 }
 
 }  // namespace
 
-void CatchInterruption() {
-  std::signal(SIGINT, Interrupt);
-  std::signal(SIGTERM, Interrupt);
-  // Under nohup it stays ignored.
-  if (std::signal(SIGHUP, Interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+void CatchInterruption(SecondSignal second) {
+  to_catch = second == SecondSignal::kEnds ? 1 : 2;
+  struct sigaction action = {};
+  action.sa_handler = Interrupt;
+  action.sa_flags = SA_RESTART;
+  for (const int signal : kSignals) sigaddset(&action.sa_mask, signal);
+  for (const int signal : kSignals) {
+    struct sigaction before = {};
+    sigaction(signal, nullptr, &before);
+    // Under nohup it stays ignored.
+    if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;
+    sigaction(signal, &action, nullptr);
+  }
 }
 
-bool Interrupted() { return interrupted != 0; }
+bool Interrupted() { return caught > 0; }
+
+bool InterruptedTwice() { return caught > 1; }
 
 }  // namespace splitfusion

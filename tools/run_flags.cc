@@ -9,7 +9,9 @@
 
 #include "flag_names.h"
 #include "sequence_flags.h"
+#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/pipelines/presets.h"
 
 DEFINE_string(preset, "splitfusion",
@@ -104,6 +106,23 @@ PinholeCamera ParseIntrinsics(const std::string& text) {
   return camera;
 }
 
+/// Finer ones would need more memory than there is, and end in OpenVDB.
+constexpr double kMinVoxel = 0.001;  // Metres.
+
+void CheckVoxel(const std::string& flag, double value) {
+  CheckOption(value >= kMinVoxel && value < 1, flag, value,
+              "metres from 0.001 to below 1");
+}
+
+/// The energy is text within a text: what is wrong in it names the flag.
+void CheckTerms() {
+  try {
+    ParseEnergy(FLAGS_terms, BuiltinTerms());
+  } catch (const OptionError& error) {
+    throw InputError(std::string("--terms: ") + error.what());
+  }
+}
+
 void SetGates(TrackerOptions* tracker) {
   const double radians = M_PI / 180;
   const double shrink[] = {1.0, 0.7, 0.5};
@@ -158,6 +177,9 @@ void SetModel(PipelineOptions* options) {
 /// Checks the parts of which several have a field of the same name, or one that
 /// is not named as its flag.
 void CheckParts(const PipelineOptions& options) {
+  CheckTerms();
+  CheckVoxel("background_voxel", FLAGS_background_voxel);
+  CheckVoxel("object_voxel", FLAGS_object_voxel);
   for (const TrackingStage& stage : options.tracker.rigid) {
     NamingFlags({{"gate distance", "rigid_distance"},
                  {"gate normal_angle", "rigid_angle"}},
@@ -171,12 +193,10 @@ void CheckParts(const PipelineOptions& options) {
   NamingFlags({{"max_iterations", "solver_iterations"},
                {"max_linear_solver_iterations", "linear_iterations"}},
               [&] { options.solver.Check(); });
-  NamingFlags({{"voxel_size", "background_voxel"},
-               {"truncation", "background_truncation"},
+  NamingFlags({{"truncation", "background_truncation"},
                {"min_piece_area", "background_min_piece"}},
               [&] { options.background.Check(); });
-  NamingFlags({{"voxel_size", "object_voxel"},
-               {"truncation", "object_truncation"},
+  NamingFlags({{"truncation", "object_truncation"},
                {"max_free_weight", "object_free_weight"},
                {"min_piece_area", "object_min_piece"}},
               [&] { options.object.Check(); });
@@ -225,7 +245,8 @@ std::string FlagfileText() {
     // --output=NEW repeats it.
     if (flag.name == "output" || flag.name == "overwrite") continue;
     const bool ours = file == "sf_run.cc" || file == "run_flags.cc" ||
-                      file == "network_flags.cc" || file == "sequence_flags.cc";
+                      file == "mask_flags.cc" || file == "network_flags.cc" ||
+                      file == "sequence_flags.cc";
     if (ours) text += "--" + flag.name + "=" + flag.current_value + "\n";
   }
   return text;

@@ -59,11 +59,16 @@ void PrintProgress(const BatchProgress& progress) {
                progress.seconds_left);
 }
 
+Stop WantedStop() {
+  if (InterruptedTwice()) return Stop::kAtOnce;
+  return Interrupted() ? Stop::kWhenReady : Stop::kNo;
+}
+
 int Run() {
-  CatchInterruption();
+  CatchInterruption(SecondSignal::kIsTold);
   const BatchOptions options = OptionsFromFlags();
   const std::size_t planned = PlanBatch(options).size();
-  const auto results = RunBatch(options, PrintProgress, Interrupted);
+  const auto results = RunBatch(options, PrintProgress, WantedStop);
   const int failed = CountFailed(results);
   const std::size_t finished = results.size() - failed;
   if (Interrupted() && finished < planned) EndProgress();

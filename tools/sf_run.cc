@@ -8,11 +8,12 @@
 #include <iomanip>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "interruption.h"
-#include "network_flags.h"
+#include "mask_flags.h"
 #include "progress_line.h"
 #include "run_flags.h"
 #include "sequence_flags.h"
@@ -23,8 +24,6 @@
 #include "splitfusion/lib/report/frame_pictures.h"
 #include "splitfusion/lib/report/library_versions.h"
 #include "splitfusion/lib/report/run_directory.h"
-#include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
-#include "splitfusion/lib/segmentation/recording_segmenter.h"
 #include "splitfusion/lib/sequence/tum_reader.h"
 #include "splitfusion/pipelines/split_fusion.h"
 #include "splitfusion/pipelines/surface_output.h"
@@ -32,15 +31,12 @@
 
 DEFINE_string(output, "", "Run directory to write.");
 DEFINE_bool(overwrite, false, "Replace an earlier run in --output.");
-DEFINE_string(masks, "auto",
-              "Folder of instance masks, none, or auto: by --model if given, "
-              "else masks_noisy or mask beside the sequence.");
-DEFINE_string(mask_kind, "non_rigid",
-              "Of masks without classes: non_rigid or rigid.");
-DEFINE_string(labels, "", "File `class, rigid|non_rigid` a line.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
+DECLARE_string(masks);
+DECLARE_double(max_depth);
+DECLARE_double(min_depth);
 DECLARE_string(preset);
 DECLARE_string(sequence);
 
@@ -59,53 +55,13 @@ void CheckNotInOutput(const std::string& flag, const std::string& input) {
               "a folder outside of --output, which is overwritten");
 }
 
-/// The network of the flags; its masks are kept in the run directory.
-std::shared_ptr<Segmenter> MakeNetworkSegmenter() {
-  CheckOption(FLAGS_masks == "auto", "masks", FLAGS_masks,
-              "auto with --model (or an empty --model= to read masks)");
-  std::unique_ptr<NetworkSegmenter> network = NetworkFromFlags();
-  const std::map<std::string, std::string> settings = network->Settings();
-  return std::make_shared<RecordingSegmenter>(
-      std::move(network), RunPaths(FLAGS_output).Detections(), settings);
-}
-
-/// @throw InputError if no frame has a mask: names of another image do not fit.
-void CheckMasksFit(const TumReader& reader,
-                   const MaskFolderSegmenter& segmenter,
-                   const std::string& folder) {
-  for (int i = 0; i < reader.size(); ++i) {
-    if (segmenter.Has(reader.Stem(i)) || segmenter.Has(reader.ColorStem(i))) {
-      return;
-    }
-  }
-  throw InputError(folder + ": no mask for any of the " +
-                   std::to_string(reader.size()) +
-                   " frames: expected names by the depth image, such as " +
-                   reader.Stem(0) + ".png, or by the colour image");
-}
-
-std::shared_ptr<Segmenter> MakeSegmenter(const TumReader& reader) {
-  if (HasNetworkFlags()) return MakeNetworkSegmenter();
-  std::string folder = FLAGS_masks;
-  if (folder == "auto") folder = FindMaskFolder(FLAGS_sequence);
-  if (folder.empty() || folder == "none") return nullptr;
-  CheckOption(FLAGS_mask_kind == "rigid" || FLAGS_mask_kind == "non_rigid",
-              "mask_kind", FLAGS_mask_kind, "rigid or non_rigid");
-  auto segmenter = std::make_shared<MaskFolderSegmenter>(
-      folder, FLAGS_mask_kind == "rigid" ? kUnnamedRigidClass : kUnnamedClass);
-  CheckMasksFit(reader, *segmenter, folder);
-  return segmenter;
-}
-
 /// One run: frames in, run directory out.
 class Run {
  public:
   Run(const TumReaderOptions& reading, const PipelineOptions& options)
       : reader_(FLAGS_sequence, reading),
-        fusion_(reader_.camera(), options,
-                FLAGS_labels.empty() ? LabelTable()
-                                     : LabelTable::FromFile(FLAGS_labels),
-                MakeSegmenter(reader_)),
+        fusion_(reader_.camera(), options, LabelsFromFlags(),
+                SegmenterFromFlags(reader_, options, FLAGS_output)),
         directory_(FLAGS_output, FLAGS_overwrite,
                    {FLAGS_preset, FlagfileText(), LibraryVersions()}) {
     WriteCalibration();
@@ -122,7 +78,7 @@ class Run {
       throw;
     }
     WriteResults(done_ == reader_.size());
-    if (done_ == reader_.size()) return;
+    if (done_ == reader_.size()) return CheckReconstructed();
     throw std::runtime_error("interrupted after " + std::to_string(done_) +
                              " of " + std::to_string(reader_.size()) +
                              " frames; what was computed is in " +
@@ -144,6 +100,30 @@ class Run {
                         });
   }
 
+  /// What a run begins with.
+  static std::string ExpectedDepth() {
+    std::ostringstream text;
+    text << "expected depth from " << FLAGS_min_depth << " to "
+         << FLAGS_max_depth << " m (--min_depth, --max_depth, --depth_scale)";
+    return text.str();
+  }
+
+  /// @throw InputError if there was nothing to reconstruct.
+  void CheckReconstructed() const {
+    if (!fusion_.surfaces().empty()) return;
+    throw InputError(FLAGS_sequence + ": nothing to reconstruct in any of " +
+                     std::to_string(done_) + " frames: " + ExpectedDepth());
+  }
+
+  /// Once a run.
+  void WarnOfMissingDepth(const Frame& frame) {
+    if (warned_of_depth_ || !fusion_.surfaces().empty()) return;
+    warned_of_depth_ = true;
+    LOG(WARNING) << "frame " << frame.index << ", " << frame.stem
+                 << ": no background to begin with: " << ExpectedDepth()
+                 << "; passed over until there is";
+  }
+
   bool ProcessNext() {
     const Stopwatch reading;
     const std::optional<Frame> frame = reader_.Next();
@@ -153,6 +133,7 @@ class Run {
     report.read_seconds = read_seconds;
     report.total_seconds += read_seconds;
     directory_.AddFrame(report, fusion_.trajectory().back());
+    WarnOfMissingDepth(*frame);
     WarnOfLostSurfaces(report);
     WarnOfCoarseGraphs(report.frame);
     const Stopwatch writing;
@@ -220,6 +201,7 @@ class Run {
   RunDirectory directory_;
   Stopwatch since_start_;
   std::set<int> coarse_;  // Surfaces whose graph is coarser than planned.
+  bool warned_of_depth_ = false;
   int done_ = 0;
 };
 

@@ -63,8 +63,8 @@ void MakeRoot(const std::string& root, bool overwrite) {
     ClearRun(RunPaths(root));
   } else {
     throw InputError(root +
-                     ": is not empty; expected a new or empty run "
-                     "directory, or the option to overwrite");
+                     ": is not empty: expected a new or empty run "
+                     "directory, or --overwrite");
   }
 }
 

@@ -51,6 +51,18 @@ Detection ParseDetection(const std::string& path, const Json& entry,
   return detection;
 }
 
+/// @throw InputError if the index of the last detection has come before; the
+/// pixels of a label image can belong to one only. `path`: for the message.
+void CheckNewIndex(const std::string& path,
+                   const std::vector<Detection>& detections) {
+  const int index = detections.back().index;
+  const auto same = [index](const Detection& d) { return d.index == index; };
+  if (std::none_of(detections.begin(), detections.end() - 1, same)) return;
+  throw InputError(path + ": index " + std::to_string(index) + " ('" +
+                   detections.back().class_name +
+                   "') a second time: expected each index of a frame once");
+}
+
 /// A name as it is, without blanks at its end; that of a COCO number; empty if
 /// there is none.
 std::string NameOfClass(std::string word) {
@@ -72,6 +84,7 @@ std::vector<Detection> ReadDetections(const std::string& path,
   std::vector<Detection> detections;
   for (const Json& entry : ReadJson(path)) {
     detections.push_back(ParseDetection(path, entry, unnamed_class));
+    CheckNewIndex(path, detections);
   }
   return detections;
 }
@@ -95,6 +108,7 @@ std::vector<Detection> ReadClassList(const std::string& path) {
                        "name or its COCO number of 1..80");
     }
     detections.push_back(std::move(detection));
+    CheckNewIndex(path + ":" + std::to_string(number), detections);
   }
   return detections;
 }
@@ -115,7 +129,9 @@ DetectionLists ReadDetectionLists(const std::string& path,
                        ": expected an object with stem, index, class and "
                        "score of one detection");
     }
-    lists[entry["stem"]].push_back(ParseDetection(place, entry, unnamed_class));
+    std::vector<Detection>& list = lists[entry["stem"]];
+    list.push_back(ParseDetection(place, entry, unnamed_class));
+    CheckNewIndex(place, list);
   }
   return lists;
 }

@@ -25,7 +25,7 @@ inline constexpr char kDetectionListFile[] = "detections.jsonl";
 /// Reads `STEM.json`: a list of {"index", "class", "score"}.
 ///
 /// `unnamed_class`: class of detections without one.
-/// @throw InputError on a broken file.
+/// @throw InputError on a broken file or an index that comes twice.
 std::vector<Detection> ReadDetections(const std::string& path,
                                       const std::string& unnamed_class);
 
@@ -35,7 +35,8 @@ inline constexpr char kClassListExtension[] = ".classes.txt";
 /// Reads `STEM.classes.txt`: lines "INDEX CLASS", where CLASS is a name or the
 /// number of a COCO class, from 1 (person) to 80; `#` begins a comment.
 ///
-/// @throw InputError on a broken line, by its number.
+/// @throw InputError on a broken line, or an index that comes twice, by the
+///     line's number.
 std::vector<Detection> ReadClassList(const std::string& path);
 
 /// Detections by the stem of their frame.
@@ -45,7 +46,8 @@ using DetectionLists = std::map<std::string, std::vector<Detection>>;
 /// "score", "box", "mask"}; box (corners x0, y0, x1, y1) and mask may be
 /// missing.
 ///
-/// @throw InputError on a missing file or a broken line, by its number.
+/// @throw InputError on a missing file, and on a broken line or an index that
+///     comes twice for a stem, by the line's number.
 DetectionLists ReadDetectionLists(const std::string& path,
                                   const std::string& unnamed_class);
 

@@ -1,8 +1,11 @@
 #include "splitfusion/lib/segmentation/label_table.h"
 
+#include <algorithm>
 #include <fstream>
+#include <vector>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/segmentation/class_names.h"
 
 namespace splitfusion {
 namespace {
@@ -53,11 +56,15 @@ LabelTable LabelTable::FromFile(const std::string& path) {
 }
 
 void LabelTable::Set(const std::string& class_name, SurfaceKind kind) {
-  if (kind == SurfaceKind::kNonRigid) {
-    non_rigid_.insert(class_name);
-  } else {
-    non_rigid_.erase(class_name);
-  }
+  const bool is_rigid = kind == SurfaceKind::kRigid;
+  (is_rigid ? rigid_ : non_rigid_).insert(class_name);
+  (is_rigid ? non_rigid_ : rigid_).erase(class_name);
+}
+
+bool LabelTable::Knows(const std::string& class_name) const {
+  const std::vector<std::string>& coco = CocoClassNames();
+  return non_rigid_.count(class_name) > 0 || rigid_.count(class_name) > 0 ||
+         std::find(coco.begin(), coco.end(), class_name) != coco.end();
 }
 
 SurfaceKind LabelTable::Kind(const std::string& class_name) const {

@@ -31,8 +31,12 @@ class LabelTable {
   /// How a class is treated; rigid if the table does not name it.
   SurfaceKind Kind(const std::string& class_name) const;
 
+  /// Whether the table names the class, or COCO does.
+  bool Knows(const std::string& class_name) const;
+
  private:
   std::set<std::string> non_rigid_;
+  std::set<std::string> rigid_;  // Only those that were set so.
 };
 
 }  // namespace splitfusion

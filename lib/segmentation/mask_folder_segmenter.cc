@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 #include "splitfusion/lib/base/error.h"
@@ -114,13 +115,34 @@ std::vector<Detection> MaskFolderSegmenter::DetectionsOf(
   return found == lists_->end() ? std::vector<Detection>() : found->second;
 }
 
-bool MaskFolderSegmenter::Has(const std::string& stem) const {
+std::vector<std::string> MaskFolderSegmenter::InstanceFiles(
+    const std::string& stem) const {
   const std::string prefix = stem + "_";
+  std::vector<std::string> names;
+  std::copy_if(instance_files_.begin(), instance_files_.end(),
+               std::back_inserter(names), [&](const std::string& name) {
+                 return name.compare(0, prefix.size(), prefix) == 0;
+               });
+  return names;
+}
+
+bool MaskFolderSegmenter::Has(const std::string& stem) const {
   return fs::exists(fs::path(folder_) / (stem + ".png")) ||
-         std::any_of(instance_files_.begin(), instance_files_.end(),
-                     [&](const std::string& name) {
-                       return name.compare(0, prefix.size(), prefix) == 0;
-                     });
+         !InstanceFiles(stem).empty();
+}
+
+std::set<std::string> MaskFolderSegmenter::ClassesOf(
+    const std::string& stem) const {
+  std::set<std::string> classes;
+  if (fs::exists(fs::path(folder_) / (stem + ".png"))) {
+    for (const Detection& d : DetectionsOf(stem, cv::Mat())) {
+      classes.insert(d.class_name);
+    }
+  }
+  for (const std::string& name : InstanceFiles(stem)) {
+    classes.insert(ClassOfFile(name, stem + "_", unnamed_class_));
+  }
+  return classes;
 }
 
 std::string MaskFolderSegmenter::StemOf(const Frame& frame) const {
@@ -144,11 +166,9 @@ std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
       AddInstance(mask, detection, &instances);
     }
   }
-  const std::string prefix = stem + "_";
-  for (const std::string& name : instance_files_) {
-    if (name.compare(0, prefix.size(), prefix) != 0) continue;
+  for (const std::string& name : InstanceFiles(stem)) {
     AddInstance(ReadMask((root / name).string(), frame) != 0,
-                {1, ClassOfFile(name, prefix, unnamed_class_), 1.0},
+                {1, ClassOfFile(name, stem + "_", unnamed_class_), 1.0},
                 &instances);
   }
   std::stable_sort(instances.begin(), instances.end(),

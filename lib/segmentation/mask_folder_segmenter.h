@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_SEGMENTATION_MASK_FOLDER_SEGMENTER_H_
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,16 @@ class MaskFolderSegmenter : public Segmenter {
   /// Whether there is a file for the frame of this stem.
   bool Has(const std::string& stem) const;
 
+  /// Classes that the lists and file names of this stem give; without those of
+  /// pixels that no list names.
+  ///
+  /// @throw InputError on a broken list.
+  std::set<std::string> ClassesOf(const std::string& stem) const;
+
  private:
   std::string StemOf(const Frame& frame) const;
+  /// Instance files of this stem.
+  std::vector<std::string> InstanceFiles(const std::string& stem) const;
   std::vector<Detection> DetectionsOf(const std::string& stem,
                                       const cv::Mat& labels) const;
 

@@ -66,12 +66,11 @@ void CheckEqual(const fs::path& path, const Settings& found,
     const auto before = found.find(name);
     if (before != found.end() && before->second == value) continue;
     const bool is_long = value.find('\n') != std::string::npos;
-    throw InputError(
-        path.string() + ": masks were made with another " + name +
-        (is_long || before == found.end()
-             ? std::string()
-             : " (" + before->second + ", now " + value + ")") +
-        ": expected the same, another folder, or the option to overwrite");
+    throw InputError(path.string() + ": masks were made with another " + name +
+                     (is_long || before == found.end()
+                          ? std::string()
+                          : " (" + before->second + ", now " + value + ")") +
+                     ": expected the same, another folder, or --overwrite");
   }
 }
 

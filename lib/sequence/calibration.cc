@@ -50,7 +50,7 @@ std::map<std::string, double> ReadKeys(const std::string& path) {
     double value = 0;
     if (!(words >> key >> value)) {
       throw InputError(Place(path, number) + ": '" + line +
-                       "': expected 'key value'");
+                       "': expected 'key value', the value a number");
     }
     values[key] = value;
   }

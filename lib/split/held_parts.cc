@@ -1,6 +1,9 @@
 #include "splitfusion/lib/split/held_parts.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <set>
+#include <string>
 
 #include "splitfusion/lib/split/image_motion.h"
 #include "splitfusion/lib/split/surface_contact.h"
@@ -18,44 +21,99 @@ constexpr int kApartFrames = 5;
 /// A detection that covers more of a surface is the surface itself.
 constexpr double kMaxCovered = 0.5;
 
-/// Share of the border of a segment that touches a followed surface which may
-/// hold it; 0 if it may not.
-double TouchShare(int part_index, int body_index,
-                  const std::vector<MergeGroup>& groups,
-                  const InstanceRegistry& registry, const SplitWork& work) {
-  const Segment& part = work.segments[part_index];
-  const int body = work.segments[body_index].surface;
-  if (body == 0 || body == part.surface) return 0;
-  if (registry.at(body).dormant || registry.at(body).held_by > 0) return 0;
-  const std::string& part_class =
-      part.surface > 0 ? registry.at(part.surface).class_name : part.class_name;
-  if (!MayHold(groups, registry.at(body).class_name, part_class)) return 0;
-  return ContactShare(work.points,
-                      SegmentPixels(part_index, work.segment_labels),
-                      SegmentPixels(body_index, work.segment_labels));
+/// Pixels of a surface, which may lie in several segments.
+cv::Mat_<uchar> SurfacePixels(int surface, const SplitWork& work) {
+  cv::Mat_<uchar> pixels(work.segment_labels.size(), uchar(0));
+  for (int i = 0; i < static_cast<int>(work.segments.size()); ++i) {
+    if (work.segments[i].surface != surface) continue;
+    pixels |= SegmentPixels(i, work.segment_labels);
+  }
+  return pixels;
 }
 
-/// Holds, keeps or releases the surface of one segment.
-void SettlePart(int index, const std::vector<MergeGroup>& groups,
+/// Pixels of a surface and of all that is held with it.
+cv::Mat_<uchar> WholePixels(int whole, const InstanceRegistry& registry,
+                            const LabelImage& labels) {
+  cv::Mat_<uchar> pixels(labels.size(), uchar(0));
+  for (const auto& [id, instance] : registry.instances()) {
+    if (registry.Whole(id) == whole) pixels |= labels == id;
+  }
+  return pixels;
+}
+
+/// Pixels of whatever held a part last, of what held that last, and so on.
+cv::Mat_<uchar> HolderPixels(int part, const InstanceRegistry& registry,
+                             const LabelImage& labels) {
+  cv::Mat_<uchar> pixels(labels.size(), uchar(0));
+  std::set<int> seen = {part};
+  int body = registry.LastHolder(part);
+  while (body > 0 && seen.insert(body).second) {
+    pixels |= labels == body;
+    body = registry.LastHolder(body);
+  }
+  return pixels;
+}
+
+/// Whether a surface may hold the part of this segment, if the two touch.
+bool MayHoldSegment(int body, const Segment& part,
+                    const std::vector<MergeGroup>& groups,
+                    const InstanceRegistry& registry) {
+  // Nothing holds what it is held by.
+  if (registry.at(body).dormant || registry.Whole(body) == part.surface) {
+    return false;
+  }
+  const std::string& part_class =
+      part.surface > 0 ? registry.at(part.surface).class_name : part.class_name;
+  return MayHold(groups, registry.at(body).class_name, part_class);
+}
+
+/// Surfaces of this frame; each once.
+std::set<int> SurfacesOf(const SplitWork& work) {
+  std::set<int> surfaces;
+  for (const Segment& segment : work.segments) surfaces.insert(segment.surface);
+  surfaces.erase(0);
+  return surfaces;
+}
+
+/// Index of the first segment of a surface, with its main detection.
+int FirstSegment(int surface, const SplitWork& work) {
+  int index = 0;
+  while (work.segments[index].surface != surface) ++index;
+  return index;
+}
+
+bool IsDetected(int surface, const SplitWork& work) {
+  return std::any_of(
+      work.segments.begin(), work.segments.end(), [&](const Segment& segment) {
+        return segment.surface == surface && !segment.mask.empty();
+      });
+}
+
+/// Holds, keeps or releases a surface.
+void SettlePart(int part, const std::vector<MergeGroup>& groups,
                 InstanceRegistry* registry, SplitWork* work) {
-  const Segment& segment = work->segments[index];
-  const int part = segment.surface;
-  const int held_by = registry->at(part).held_by;
-  const bool seen = !segment.mask.empty();
-  const int touched = seen ? FindHolder(index, groups, *registry, *work) : 0;
+  const int index = FirstSegment(part, *work);
+  const int holder = registry->at(part).held_by;
   if (registry->at(part).dormant ||
-      (held_by > 0 && registry->at(held_by).dormant)) {
+      (holder > 0 && registry->at(holder).dormant)) {
     registry->Release(part);
   }
-  if (touched > 0) {
-    registry->Hold(part, touched);
-  } else if (seen && held_by > 0 &&
-             registry->CountApart(part) >= kApartFrames) {
-    registry->Release(part);
+  if (IsDetected(part, *work)) {
+    const int held_by = registry->at(part).held_by;
+    const int touched = FindHolder(index, groups, *registry, *work);
+    if (held_by > 0 && touched != held_by &&
+        registry->CountApart(part) >= kApartFrames) {
+      registry->Release(part);
+    }
+    if (touched > 0 &&
+        (touched == held_by || registry->at(part).held_by == 0)) {
+      registry->Hold(part, touched);
+    }
   }
-  SplitDecision decision = MakeDecision("merged", segment);
-  decision.surface = registry->at(part).held_by;
-  if (decision.surface > 0) work->result.decisions.push_back(decision);
+  if (registry->at(part).held_by == 0) return;
+  SplitDecision decision = MakeDecision("merged", work->segments[index]);
+  decision.surface = registry->Whole(part);
+  work->result.decisions.push_back(decision);
 }
 
 }  // namespace
@@ -87,29 +145,36 @@ void SplitHeldParts(const InstanceRegistry& registry, const LabelImage& last,
                     LabelImage* predicted) {
   if (last.empty()) return;
   for (const int part : registry.Followed()) {
-    const int body = registry.LastHolder(part);
-    if (body == 0) continue;
+    if (registry.LastHolder(part) == 0) continue;
     cv::Point2d shift(0, 0);
-    if (registry.at(part).held_by == body) {
-      shift = CenterOf((*predicted == body) | (*predicted == part)) -
-              CenterOf((last == body) | (last == part));
+    if (registry.at(part).held_by > 0) {
+      const int whole = registry.Whole(part);
+      shift = CenterOf(WholePixels(whole, registry, *predicted)) -
+              CenterOf(WholePixels(whole, registry, last));
     }
     const cv::Mat_<uchar> was = last == part;
-    predicted->setTo(part, Shifted(was, shift) & (*predicted == body));
+    predicted->setTo(
+        part, Shifted(was, shift) & HolderPixels(part, registry, *predicted));
   }
 }
 
 int FindHolder(int index, const std::vector<MergeGroup>& groups,
                const InstanceRegistry& registry, const SplitWork& work) {
-  const int part = work.segments[index].surface;
-  const int holder = part > 0 ? registry.at(part).held_by : 0;
+  const Segment& part = work.segments[index];
+  const int holder = part.surface > 0 ? registry.at(part.surface).held_by : 0;
+  const cv::Mat_<uchar> pixels =
+      part.surface > 0 ? SurfacePixels(part.surface, work)
+                       : SegmentPixels(index, work.segment_labels);
   int best = 0;
-  double best_share = kMinTouch;
-  for (int i = 0; i < static_cast<int>(work.segments.size()); ++i) {
-    const double share = TouchShare(index, i, groups, registry, work);
-    if (share < best_share) continue;
-    best = work.segments[i].surface;
-    if (best == holder) return holder;
+  double best_share = 0;
+  for (const int body : SurfacesOf(work)) {
+    if (!MayHoldSegment(body, part, groups, registry)) continue;
+    const double share =
+        ContactShare(work.points, pixels, SurfacePixels(body, work));
+    if (share < kMinTouch) continue;
+    if (body == holder) return holder;
+    if (share <= best_share) continue;
+    best = body;
     best_share = share;
   }
   return best;
@@ -118,19 +183,14 @@ int FindHolder(int index, const std::vector<MergeGroup>& groups,
 void HoldTouchingParts(const std::vector<MergeGroup>& groups,
                        InstanceRegistry* registry, SplitWork* work) {
   if (groups.empty()) return;
-  for (int i = 0; i < static_cast<int>(work->segments.size()); ++i) {
-    const int id = work->segments[i].surface;
-    if (id > 0 && registry->at(id).merged_into == 0) {
-      SettlePart(i, groups, registry, work);
-    }
-  }
+  for (const int id : SurfacesOf(*work)) SettlePart(id, groups, registry, work);
 }
 
 LabelImage JoinHeldParts(const InstanceRegistry& registry,
                          const LabelImage& labels) {
   LabelImage joined = labels.clone();
   for (const auto& [id, instance] : registry.instances()) {
-    if (instance.held_by > 0) joined.setTo(instance.held_by, labels == id);
+    if (instance.held_by > 0) joined.setTo(registry.Whole(id), labels == id);
   }
   return joined;
 }

@@ -82,6 +82,11 @@ void InstanceRegistry::Hold(int part, int body) {
   apart_[part] = 0;
 }
 
+int InstanceRegistry::Whole(int id) const {
+  while (at(id).held_by > 0) id = at(id).held_by;
+  return id;
+}
+
 int InstanceRegistry::LastHolder(int part) const {
   const auto found = last_holder_.find(part);
   return found == last_holder_.end() ? 0 : found->second;

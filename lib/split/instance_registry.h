@@ -20,7 +20,8 @@ struct TrackedInstance {
   int last_detected_frame = 0;  ///< Latest frame with a detection of it.
   bool dormant = false;  ///< Not followed: out of view or missed too long.
   int merged_into = 0;   ///< Surface it turned out to be a part of; 0 = none.
-  /// Surface that holds it and that its pixels belong to meanwhile; 0 = none.
+  /// Surface that holds it, so that its pixels belong to Whole() meanwhile;
+  /// 0 = none.
   int held_by = 0;
 };
 
@@ -62,7 +63,8 @@ class InstanceRegistry {
   /// `part` was never an instance of its own.
   void Merge(int part, int body);
 
-  /// The pixels of `part` belong to `body` from now on; its id stays its own.
+  /// The pixels of `part` belong to the whole of `body` from now on; its id
+  /// stays its own. `part` may not be the whole of `body`.
   void Hold(int part, int body);
 
   /// Counts a frame in which a held part was seen apart from what holds it, and
@@ -71,6 +73,10 @@ class InstanceRegistry {
 
   /// Nothing holds the part any more.
   void Release(int part) { instances_.at(part).held_by = 0; }
+
+  /// Surface that an instance is a part of at present: what holds it, or what
+  /// holds that, and so on; itself if nothing does.
+  int Whole(int id) const;
 
   /// Latest surface that held a part; 0 if none ever did.
   int LastHolder(int part) const;

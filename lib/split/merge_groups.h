@@ -8,7 +8,9 @@
 namespace splitfusion {
 
 /// Classes whose instances are one surface while they touch, as a person and
-/// what the person holds.
+/// what the person holds. Groups chain: by "person+bag" and "bag+toy", a toy
+/// on a bag is one surface with the person who holds the bag; it does not join
+/// a person whom it touches alone.
 struct MergeGroup {
   std::string body;            ///< Class of which the surface is.
   std::set<std::string> held;  ///< Classes that join it.

@@ -216,8 +216,10 @@ TEST_F(BatchTest, ChildKeepsTheLastVersionOfAProgressLine) {
 
 TEST_F(BatchTest, StopsTheRunningChildAndStartsNoOther) {
   for (const char* name : {"room", "endless", "desk"}) AddSequence(name);
-  const auto results = RunBatch(
-      options_, {}, [&] { return folder_.Has("out/endless/default/started"); });
+  const auto results = RunBatch(options_, {}, [&] {
+    return folder_.Has("out/endless/default/started") ? Stop::kWhenReady
+                                                      : Stop::kNo;
+  });
   ASSERT_EQ(results.size(), 2u);
   EXPECT_EQ(results[0].exit_code, 0);
   EXPECT_EQ(results[1].exit_code, 1);

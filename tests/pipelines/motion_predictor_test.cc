@@ -56,5 +56,38 @@ TEST(MotionPredictor, TheJumpOfASurfaceThatIsBackIsNoVelocity) {
   EXPECT_NEAR(predictor.velocity().translation().x(), 0.01, 1e-12);
 }
 
+TEST(MotionPredictor, AfterLostFramesTheVelocityIsThatOfOneFrame) {
+  MotionPredictor predictor;
+  const Eigen::Vector3d center(0.3, 0, 0);
+  predictor.Record(At(0), center, Placement::kNotTracked);  // Born.
+  predictor.Record(At(0.1), center, Placement::kTracked);
+  EXPECT_NEAR(predictor.velocity().translation().x(), 0.1, 1e-12);
+  for (int i = 0; i < 3; ++i) {
+    predictor.Record(At(0.1), center, Placement::kNotTracked);
+    EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
+  }
+  // Four frames later it is 8 cm farther, and has turned by 20 degrees.
+  const Rigid3d found = At(0.18, 20);
+  predictor.Record(found, center, Placement::kTracked);
+  Rigid3d way = Rigid3d::Identity();
+  for (int i = 0; i < 4; ++i) way = predictor.velocity() * way;
+  EXPECT_TRUE(way.linear().isApprox((found * At(0.1).inverse()).linear()));
+  const Eigen::Vector3d step =
+      predictor.velocity() * (At(0.1) * center) - At(0.1) * center;
+  EXPECT_TRUE(step.isApprox((found * center - At(0.1) * center) / 4, 1e-12));
+  // It is no usual step.
+  predictor.Record(found, center, Placement::kHidden);
+  EXPECT_NEAR(predictor.velocity().translation().x(), 0.1, 1e-12);
+}
+
+TEST(MotionPredictor, LostFramesAfterHiddenOnesDoNotMakeAVelocityOfTheJump) {
+  MotionPredictor predictor;
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kTracked);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kHidden);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kNotTracked);
+  predictor.Record(At(0.6), Eigen::Vector3d::Zero(), Placement::kTracked);
+  EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
+}
+
 }  // namespace
 }  // namespace splitfusion

@@ -28,6 +28,18 @@ TEST(LabelTable, IsEditedByAFile) {
   EXPECT_EQ(table.Kind("person"), SurfaceKind::kNonRigid);
 }
 
+TEST(LabelTable, KnowsCocoAndWhatItWasTold) {
+  const TemporaryFolder folder;
+  const LabelTable table = LabelTable::FromFile(
+      folder.Write("labels.txt", "robot, rigid\nsnake, non_rigid\n"));
+  for (const char* name :
+       {"person", "chair", "toothbrush", "object", "robot", "snake"}) {
+    EXPECT_TRUE(table.Knows(name)) << name;
+  }
+  EXPECT_FALSE(table.Knows("teddybear"));
+  EXPECT_FALSE(LabelTable().Knows("robot"));
+}
+
 TEST(LabelTable, NamesTheBrokenLine) {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text) {

@@ -83,6 +83,18 @@ TEST_F(MaskFolderSegmenterTest, ReadsOneFilePerInstance) {
   EXPECT_EQ(cv::countNonZero(instances[2].mask), 12 * 24);
 }
 
+TEST_F(MaskFolderSegmenterTest, NamesTheClassesOfAFrame) {
+  using Classes = std::set<std::string>;
+  WriteLabels();
+  WriteLabels("000008_teddy_bear_2.png");
+  const MaskFolderSegmenter segmenter(folder_ / "");
+  EXPECT_EQ(segmenter.ClassesOf("000007"), Classes{});
+  EXPECT_EQ(segmenter.ClassesOf("000008"), Classes{"teddy bear"});
+  EXPECT_EQ(segmenter.ClassesOf("000009"), Classes{});
+  folder_.Write("000007.classes.txt", "1 robot\n2 1\n");
+  EXPECT_EQ(segmenter.ClassesOf("000007"), (Classes{"person", "robot"}));
+}
+
 TEST_F(MaskFolderSegmenterTest, AFrameWithoutFileHasNoDetections) {
   WriteLabels("000001.png");
   EXPECT_TRUE(Segment().empty());
@@ -122,6 +134,29 @@ TEST_F(MaskFolderSegmenterTest, NamesBrokenInput) {
   frame_.color = cv::Mat(48, 64, CV_8UC3);
   ExpectInputError([&] { Segment(); },
                    "000007.png: mask of 32x24: expected 64x48");
+}
+
+TEST_F(MaskFolderSegmenterTest, AnIndexThatComesTwiceIsRefused) {
+  WriteLabels();
+  folder_.Write("000007.classes.txt", "1 dog\n2 cat\n# again\n1 person\n");
+  ExpectInputError([&] { Segment(); },
+                   "000007.classes.txt:4: index 1 ('person') a second time: "
+                   "expected each index of a frame once");
+  folder_.Write("000007.json",
+                R"([{"index": 2, "class": "dog"}, {"index": 2}])");
+  ExpectInputError([&] { Segment(); },
+                   "000007.json: index 2 ('object') a second time");
+  // Other frames have indices of their own.
+  const std::string lines =
+      "{\"stem\": \"000007\", \"index\": 3}\n"
+      "{\"stem\": \"000008\", \"index\": 3}\n";
+  folder_.Write("detections.jsonl", lines);
+  EXPECT_EQ(ReadDetectionLists(folder_ / "detections.jsonl", "object").size(),
+            2u);
+  folder_.Write("detections.jsonl", lines + lines);
+  ExpectInputError(
+      [&] { ReadDetectionLists(folder_ / "detections.jsonl", "object"); },
+      "detections.jsonl:3: index 3 ('object') a second time");
 }
 
 TEST_F(MaskFolderSegmenterTest, RefusesColourMasks) {

@@ -184,6 +184,21 @@ TEST_F(SeenSpaceTest, IsUnknownWithoutDepth) {
   EXPECT_EQ(EmptyShare(2.0, here_), 0);
 }
 
+TEST_F(SeenSpaceTest, IsUnknownWithinTwoPixelsOfWhatHidesIt) {
+  // A pole before the wall; then a card behind the pole's place.
+  const cv::Rect pole(75, 0, 10, 120);
+  cv::Mat with_pole = wall_.clone();
+  with_pole(pole) = 2.0;
+  space_.Add(0, with_pole, here_);
+  const cv::Mat_<float> image(120, 160, 2.4f);
+  const cv::Rect card(60, 40, 40, 40);
+  const cv::Mat_<uchar> empty = space_.WasEmpty(
+      RectMask(card), ComputePointMap(image, SceneCamera()), here_);
+  cv::Mat_<uchar> expected = RectMask(card);
+  expected(cv::Rect(pole.x - 2, 0, pole.width + 4, 120)) = 0;
+  EXPECT_EQ(cv::countNonZero(empty != expected), 0);
+}
+
 TEST_F(SeenSpaceTest, TheFirstAndTheLastFramesAreRemembered) {
   const cv::Mat card = cv::Mat_<float>(120, 160, 2.0f);
   space_.Add(0, wall_, here_);

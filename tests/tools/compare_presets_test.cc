@@ -113,5 +113,41 @@ TEST_F(ComparePresets, SaysWhatIsMissing) {
   EXPECT_THAT(folder_.Read("said.txt"), HasSubstr("sf_montage: not found"));
 }
 
+TEST_F(ComparePresets, AWrongFlagEndsItBeforeAnyRun) {
+  Program("sf_run",
+          "#!/bin/sh\necho noise >&2\necho 'sf_run: --n = 1: no' >&2\nexit 2");
+  EXPECT_EQ(Run((folder_ / "room") + " --n=1 --output=" + (folder_ / "out")),
+            2);
+  EXPECT_EQ(folder_.Read("said.txt"),
+            "compare_presets.sh: sf_run: --n = 1: no\n");
+  EXPECT_FALSE(folder_.Has("out/arguments.txt"));
+  // That its stand-in for a sequence is missing is right.
+  Program("sf_run", R"(#!/bin/sh
+for argument in "$@"; do
+  case "$argument" in --sequence=*) sequence="${argument#*=}" ;; esac
+done
+echo "sf_run: $sequence: no such folder: expected a sequence" >&2
+exit 2
+)");
+  EXPECT_EQ(Run((folder_ / "room") + " --n=1 --output=" + (folder_ / "out")),
+            3);
+  EXPECT_TRUE(folder_.Has("out/arguments.txt"));
+}
+
+TEST_F(ComparePresets, IsNoTableWhereEveryRunFailed) {
+  Program("sf_batch", R"(#!/bin/sh
+for argument in "$@"; do
+  case "$argument" in --output=*) output="${argument#*=}" ;; esac
+done
+printf 'sequence,error,ate_rmse_m\nroom,no masks,\nroom,"no, none",\n' \
+    > "$output/summary.csv"
+exit 3
+)");
+  EXPECT_EQ(Run((folder_ / "room") + " --output=" + (folder_ / "out")), 3);
+  EXPECT_EQ(folder_.Read("said.txt"),
+            "compare_presets.sh: every run failed; see " + (folder_ / "out") +
+                "/summary.csv and the *.err.log files beside\n");
+}
+
 }  // namespace
 }  // namespace splitfusion

@@ -25,6 +25,10 @@ class FlagMessages : public ::testing::Test {
 TEST_F(FlagMessages, NameTheFlagWhereTheOptionHasAnotherName) {
   RunRefuses("--background_voxel=-1", "--background_voxel = -1: expected metr");
   RunRefuses("--object_voxel=1.5", "--object_voxel = 1.5: expected metres");
+  RunRefuses("--background_voxel=0.0009",
+             "--background_voxel = 0.0009: expected metres from 0.001");
+  RunRefuses("--object_voxel=1e-9",
+             "--object_voxel = 1e-09: expected metres from 0.001 to below 1");
   RunRefuses("--background_truncation=0.01",
              "--background_truncation = 0.01: expected at least 2 voxels");
   RunRefuses("--object_voxel=0.02", "--object_truncation = 0.03: expected at");
@@ -53,6 +57,17 @@ TEST_F(FlagMessages, NameTheFlagOfAnOptionOfTheSameName) {
                 "--scene = moon: expected one of room_person");
   ExpectRefused("sf_evaluate", "--run=none --depth_every=-1",
                 "--depth_every = -1: expected");
+}
+
+TEST_F(FlagMessages, NameTheTermsAndWhatIsWrongInThem) {
+  RunRefuses("--terms='arap(weight=-1)'",
+             "--terms: arap.weight = -1: expected a number >= 0");
+  RunRefuses("--terms='arap(scale=x)'", "--terms: arap.scale = x: expected");
+  RunRefuses("--terms='arap(loss=none)'",
+             "--terms: loss = none: expected trivial, huber,");
+  RunRefuses("--terms='arap(wait=1)'", "--terms: key 'wait' of term 'arap'");
+  RunRefuses("--terms=arab", "--terms: term 'arab' is unknown: expected arap");
+  RunRefuses("--terms=", "--terms is empty: expected one or more of arap");
 }
 
 TEST_F(FlagMessages, SayAnglesInTheFlagsUnit) {

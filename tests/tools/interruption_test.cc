@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 #include "support/program.h"
 #include "support/temporary_folder.h"
@@ -50,6 +54,30 @@ class Interruption : public ::testing::Test {
     return program->Wait();
   }
 
+  /// Sends two signals when the run directory has two frames, and waits for
+  /// the end.
+  ProgramResult InterruptTwice(RunningProgram* program, const std::string& run,
+                               int first, int second, int pause_ms) const {
+    while (program->Runs() && FramesIn(run) < 2) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    program->Send(first);
+    std::this_thread::sleep_for(std::chrono::milliseconds(pause_ms));
+    program->Send(second);
+    return program->Wait();
+  }
+
+  /// Whether anything still runs whose command line names this run directory.
+  bool IsAtWork(const std::string& run) const {
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      std::ifstream stream(entry.path() / "cmdline");
+      const std::string line{std::istreambuf_iterator<char>(stream), {}};
+      const bool is_run = line.find("sf_run") != std::string::npos;
+      if (is_run && line.find(folder_ / run) != std::string::npos) return true;
+    }
+    return false;
+  }
+
   /// Expects a run directory that holds what was computed and says that it is
   /// not all.
   void ExpectUnfinished(const std::string& run) const {
@@ -75,6 +103,39 @@ TEST_F(Interruption, ARunWritesWhatItHas) {
   EXPECT_THAT(result.errors, HasSubstr(" of 60 frames"));
   ExpectUnfinished("run");
 }
+
+TEST_F(Interruption, ASecondSignalOfAnyKindEndsARunAtOnce) {
+  RunningProgram program("sf_run", "--sequence=" + (folder_ / "sequence") +
+                                       " --output=" + (folder_ / "run"));
+  const ProgramResult result =
+      InterruptTwice(&program, "run", SIGINT, SIGTERM, 0);
+  EXPECT_EQ(result.exit_code, -1) << "ended by itself";
+  EXPECT_FALSE(folder_.Has("run/summary.json"));
+}
+
+class TwoSignals : public Interruption,
+                   public testing::WithParamInterface<std::pair<int, int>> {};
+
+TEST_P(TwoSignals, EndABatchAndItsRun) {
+  const auto [second, pause_ms] = GetParam();
+  RunningProgram program("sf_batch", "--sequences=" + (folder_ / "sequence") +
+                                         " --output=" + (folder_ / "out"));
+  const std::string run = "out/sequence/default";
+  const ProgramResult result =
+      InterruptTwice(&program, run, SIGINT, second, pause_ms);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.errors, HasSubstr("interrupted after 0 of 1 runs"));
+  EXPECT_FALSE(IsAtWork(run));
+  EXPECT_FALSE(folder_.Has(run + "/summary.json"));
+  const Json batch = Json::parse(folder_.Read("out/summary.json"));
+  ASSERT_EQ(batch.size(), 1u);
+  EXPECT_EQ(batch[0]["exit_code"], 128 + SIGKILL);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfAnyKind, TwoSignals,
+                         testing::Values(std::pair(SIGINT, 1),
+                                         std::pair(SIGTERM, 0),
+                                         std::pair(SIGHUP, 5)));
 
 TEST_F(Interruption, ABatchStopsItsRunAndRecordsIt) {
   const std::string options =

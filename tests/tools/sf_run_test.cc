@@ -11,6 +11,7 @@
 #include "support/expect_refused.h"
 #include "support/program.h"
 #include "support/temporary_folder.h"
+#include "tools/sf_run_fixture.h"
 
 namespace splitfusion {
 namespace {
@@ -33,32 +34,6 @@ std::vector<std::string> Poses(const std::string& text) {
   }
   return lines;
 }
-
-class SfRun : public ::testing::Test {
- protected:
-  void SetUp() override {
-    for (const char* program : {"sf_synth", "sf_run", "sf_evaluate"}) {
-      if (!HasProgram(program)) GTEST_SKIP() << program << " is not built";
-    }
-  }
-
-  /// A tiny sequence of four frames in the folder `sequence`.
-  void Synthesize() const {
-    const ProgramResult result =
-        RunProgram("sf_synth", "--width=160 --height=120 --frames=4 --output=" +
-                                   (folder_ / "sequence"));
-    ASSERT_EQ(result.exit_code, 0) << result.errors;
-  }
-
-  ProgramResult Run(const std::string& output,
-                    const std::string& arguments = "") const {
-    return RunProgram("sf_run", "--sequence=" + (folder_ / "sequence") +
-                                    " --output=" + (folder_ / output) + " " +
-                                    arguments);
-  }
-
-  TemporaryFolder folder_;
-};
 
 TEST_F(SfRun, WritesWhatTheContractNames) {
   Synthesize();

@@ -98,6 +98,7 @@ TEST_F(SfSegment, WritesMasksAndOverlaysAndGoesOn) {
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.errors,
               HasSubstr("another score_threshold (0.25, now 0.7"));
+  EXPECT_THAT(other.errors, HasSubstr("another folder, or --overwrite\n"));
   EXPECT_EQ(Run("sf_segment", "masks",
                 NetworkFlags() + "--score_threshold=0.7 --overwrite")
                 .exit_code,
