@@ -7,8 +7,9 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/energy/ceres_blocks.h"
 #include "splitfusion/lib/energy/solver.h"
-#include "splitfusion/lib/energy/term_blocks.h"
+#include "splitfusion/lib/energy/term_residuals.h"
 
 namespace splitfusion {
 namespace {
@@ -19,7 +20,7 @@ std::string Upper(std::string text) {
   return text;
 }
 
-/// The Ceres problem of one minimisation; it owns twists and losses.
+/// The Ceres problem of one minimisation; it owns the twists.
 class CeresProblem {
  public:
   CeresProblem(const SurfaceProblem& input, const DeformationGraph& graph)
@@ -27,10 +28,10 @@ class CeresProblem {
     for (int i = 0; i < graph.size(); ++i) {
       problem_.AddParameterBlock(&twists_[kTwistSize * i], kTwistSize);
     }
-    for (TermBlocks& term : CollectBlocks(input, graph)) {
+    for (const ProblemTerm& term : CollectResiduals(input, graph)) {
       AddedTerm added;
       added.cost = term.cost;
-      for (ResidualBlock& block : term.blocks) {
+      for (ResidualBlock& block : MakeCeresBlocks(graph, term.residuals)) {
         added.ids.push_back(Add(std::move(block)));
       }
       terms_.push_back(std::move(added));
@@ -76,7 +77,6 @@ class CeresProblem {
 
   static ceres::Problem::Options ProblemOptions() {
     ceres::Problem::Options options;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     options.disable_all_safety_checks = true;
     return options;
   }
@@ -86,16 +86,10 @@ class CeresProblem {
     for (const int node : block.nodes) {
       parameters.push_back(&twists_[kTwistSize * node]);
     }
-    ceres::LossFunction* loss = block.loss.get();
-    if (block.loss != nullptr &&
-        (losses_.empty() || losses_.back() != block.loss)) {
-      losses_.push_back(block.loss);
-    }
-    return problem_.AddResidualBlock(block.cost.release(), loss, parameters);
+    return problem_.AddResidualBlock(block.cost.release(), nullptr, parameters);
   }
 
   std::vector<double> twists_;
-  std::vector<std::shared_ptr<ceres::LossFunction>> losses_;
   ceres::Problem problem_;
   std::vector<AddedTerm> terms_;
 };
