@@ -27,6 +27,23 @@ typedef double Vector2 __attribute__((vector_size(16), aligned(8), may_alias));
 
 #define SPLITFUSION_LOAD4(p) (*reinterpret_cast<const Vector4*>(p))
 #define SPLITFUSION_FILL4(a) (Vector4{a, a, a, a})
+// The outer halves of [a0 a1 | .. ..] and [.. .. | b2 b3].
+#define SPLITFUSION_HALVES(a, b) __builtin_shufflevector(a, b, 0, 1, 6, 7)
+// [h2 h3 | l0 l1]: numbers 4, 5, 0, 1 of six, from 0..3 and 2..5.
+#define SPLITFUSION_MIDDLE(l, h) __builtin_shufflevector(h, l, 2, 3, 4, 5)
+#define SPLITFUSION_LOW(v) __builtin_shufflevector(v, v, 0, 1)
+#define SPLITFUSION_HIGH(v) __builtin_shufflevector(v, v, 2, 3)
+// Adds the sums of a pair of rows to `out`: of a and the low half of b, and of
+// the high half of b and c.
+#define SPLITFUSION_ADD_SUMS(a, b, c, out)                                \
+  do {                                                                    \
+    const Vector2 first =                                                 \
+        (SPLITFUSION_LOW(a) + SPLITFUSION_HIGH(a)) + SPLITFUSION_LOW(b);  \
+    const Vector2 second =                                                \
+        SPLITFUSION_HIGH(b) + (SPLITFUSION_LOW(c) + SPLITFUSION_HIGH(c)); \
+    (out) += __builtin_shufflevector(first, second, 0, 2) +               \
+             __builtin_shufflevector(first, second, 1, 3);                \
+  } while (false)
 #define SPLITFUSION_SUM4(v) (((v)[0] + (v)[2]) + ((v)[1] + (v)[3]))
 
 SPLITFUSION_WIDE
@@ -55,7 +72,7 @@ void AddOuterProducts(const double* rows, int count, int nodes, int first,
         const double* j = chunk + r * stride + 6 * l;
         const Vector4 low = SPLITFUSION_LOAD4(j);
         const Vector4 high = SPLITFUSION_LOAD4(j + 2);
-        const Vector4 middle = __builtin_shufflevector(high, low, 2, 3, 4, 5);
+        const Vector4 middle = SPLITFUSION_MIDDLE(low, high);
         const Vector4* m = multipliers[r];
         s0 += m[0] * low;
         s1 += m[1] * middle;
@@ -75,62 +92,81 @@ void AddOuterProducts(const double* rows, int count, int nodes, int first,
 }
 
 SPLITFUSION_WIDE
+void AddTransposedProduct(const double* a, const double* b, double* out) {
+  Vector4* sum = reinterpret_cast<Vector4*>(out);
+  Vector4 s0 = sum[0], s1 = sum[1], s2 = sum[2], s3 = sum[3], s4 = sum[4];
+  Vector4 s5 = sum[5], s6 = sum[6], s7 = sum[7], s8 = sum[8];
+  for (int row = 0; row < 6; ++row, a += 6, b += 6) {
+    const Vector4 low = SPLITFUSION_LOAD4(b);
+    const Vector4 high = SPLITFUSION_LOAD4(b + 2);
+    const Vector4 middle = SPLITFUSION_MIDDLE(low, high);
+    const Vector4 m0 = SPLITFUSION_FILL4(a[0]), m2 = SPLITFUSION_FILL4(a[1]);
+    const Vector4 m3 = SPLITFUSION_FILL4(a[2]), m5 = SPLITFUSION_FILL4(a[3]);
+    const Vector4 m6 = SPLITFUSION_FILL4(a[4]), m8 = SPLITFUSION_FILL4(a[5]);
+    s0 += m0 * low;
+    s1 += SPLITFUSION_HALVES(m0, m2) * middle;
+    s2 += m2 * high;
+    s3 += m3 * low;
+    s4 += SPLITFUSION_HALVES(m3, m5) * middle;
+    s5 += m5 * high;
+    s6 += m6 * low;
+    s7 += SPLITFUSION_HALVES(m6, m8) * middle;
+    s8 += m8 * high;
+  }
+  sum[0] = s0, sum[1] = s1, sum[2] = s2, sum[3] = s3, sum[4] = s4;
+  sum[5] = s5, sum[6] = s6, sum[7] = s7, sum[8] = s8;
+}
+
+SPLITFUSION_WIDE
 void MultiplySymmetric(int size, const int* row_begin, const int* columns,
                        const double* blocks, const double* x, double* y) {
   std::fill_n(y, 6 * size, 0.0);
   for (int row = 0; row < size; ++row) {
     const double* own = x + 6 * row;
-    Vector4 m[9] = {}, sum[9] = {};
-    for (int pair = 0; pair < 3; ++pair) {
-      const double a = own[2 * pair], b = own[2 * pair + 1];
-      m[3 * pair] = SPLITFUSION_FILL4(a);
-      m[3 * pair + 1] = Vector4{a, a, b, b};
-      m[3 * pair + 2] = SPLITFUSION_FILL4(b);
-    }
+    const Vector4 m0 = SPLITFUSION_FILL4(own[0]);
+    const Vector4 m2 = SPLITFUSION_FILL4(own[1]);
+    const Vector4 m3 = SPLITFUSION_FILL4(own[2]);
+    const Vector4 m5 = SPLITFUSION_FILL4(own[3]);
+    const Vector4 m6 = SPLITFUSION_FILL4(own[4]);
+    const Vector4 m8 = SPLITFUSION_FILL4(own[5]);
+    const Vector4 m1 = SPLITFUSION_HALVES(m0, m2);
+    const Vector4 m4 = SPLITFUSION_HALVES(m3, m5);
+    const Vector4 m7 = SPLITFUSION_HALVES(m6, m8);
     const Vector4* v =
         reinterpret_cast<const Vector4*>(blocks + kBlock * row_begin[row]);
     Vector4 low = SPLITFUSION_LOAD4(own);
     Vector4 high = SPLITFUSION_LOAD4(own + 2);
-    Vector4 middle = __builtin_shufflevector(high, low, 2, 3, 4, 5);
-    for (int pair = 0; pair < 9; pair += 3) {
-      sum[pair] = v[pair] * low;
-      sum[pair + 1] = v[pair + 1] * middle;
-      sum[pair + 2] = v[pair + 2] * high;
-    }
+    Vector4 middle = SPLITFUSION_MIDDLE(low, high);
+    Vector4 s0 = v[0] * low, s1 = v[1] * middle, s2 = v[2] * high;
+    Vector4 s3 = v[3] * low, s4 = v[4] * middle, s5 = v[5] * high;
+    Vector4 s6 = v[6] * low, s7 = v[7] * middle, s8 = v[8] * high;
     for (int k = row_begin[row] + 1; k < row_begin[row + 1]; ++k) {
       v += 9;
       const double* other = x + 6 * columns[k];
       low = SPLITFUSION_LOAD4(other);
       high = SPLITFUSION_LOAD4(other + 2);
-      middle = __builtin_shufflevector(high, low, 2, 3, 4, 5);
-      const Vector4 v0 = v[0], v1 = v[1], v2 = v[2];
-      const Vector4 v3 = v[3], v4 = v[4], v5 = v[5];
-      const Vector4 v6 = v[6], v7 = v[7], v8 = v[8];
-      sum[0] += v0 * low;
-      sum[1] += v1 * middle;
-      sum[2] += v2 * high;
-      sum[3] += v3 * low;
-      sum[4] += v4 * middle;
-      sum[5] += v5 * high;
-      sum[6] += v6 * low;
-      sum[7] += v7 * middle;
-      sum[8] += v8 * high;
-      const Vector4 t0 = (m[0] * v0 + m[3] * v3) + m[6] * v6;
-      const Vector4 t1 = (m[1] * v1 + m[4] * v4) + m[7] * v7;
-      const Vector4 t2 = (m[2] * v2 + m[5] * v5) + m[8] * v8;
+      middle = SPLITFUSION_MIDDLE(low, high);
+      s0 += v[0] * low;
+      s1 += v[1] * middle;
+      s2 += v[2] * high;
+      s3 += v[3] * low;
+      s4 += v[4] * middle;
+      s5 += v[5] * high;
+      s6 += v[6] * low;
+      s7 += v[7] * middle;
+      s8 += v[8] * high;
+      const Vector4 t0 = (m0 * v[0] + m3 * v[3]) + m6 * v[6];
+      const Vector4 t1 = (m1 * v[1] + m4 * v[4]) + m7 * v[7];
+      const Vector4 t2 = (m2 * v[2] + m5 * v[5]) + m8 * v[8];
       double* out = y + 6 * columns[k];
-      *reinterpret_cast<Vector4*>(out) +=
-          t0 + __builtin_shufflevector(t1, t2, 2, 3, 4, 5);
+      *reinterpret_cast<Vector4*>(out) += t0 + SPLITFUSION_MIDDLE(t2, t1);
       *reinterpret_cast<Vector2*>(out + 4) +=
-          __builtin_shufflevector(t1, t1, 0, 1) +
-          __builtin_shufflevector(t2, t2, 2, 3);
+          SPLITFUSION_LOW(t1) + SPLITFUSION_HIGH(t2);
     }
-    double* out = y + 6 * row;
-    for (int pair = 0; pair < 3; ++pair) {
-      const Vector4* s = sum + 3 * pair;
-      out[2 * pair] += SPLITFUSION_SUM4(s[0]) + (s[1][0] + s[1][1]);
-      out[2 * pair + 1] += SPLITFUSION_SUM4(s[2]) + (s[1][2] + s[1][3]);
-    }
+    Vector2* out = reinterpret_cast<Vector2*>(y + 6 * row);
+    SPLITFUSION_ADD_SUMS(s0, s1, s2, out[0]);
+    SPLITFUSION_ADD_SUMS(s3, s4, s5, out[1]);
+    SPLITFUSION_ADD_SUMS(s6, s7, s8, out[2]);
   }
 }
 
@@ -149,13 +185,83 @@ double MultiplyDiagonal(int size, const double* blocks, const double* x,
       t1 += (Vector4{a, a, b, b}) * v[3 * pair + 1];
       t2 += SPLITFUSION_FILL4(b) * v[3 * pair + 2];
     }
-    const Vector4 low = t0 + __builtin_shufflevector(t1, t2, 2, 3, 4, 5);
-    const Vector2 high = __builtin_shufflevector(t1, t1, 0, 1) +
-                         __builtin_shufflevector(t2, t2, 2, 3);
+    const Vector4 low = t0 + SPLITFUSION_MIDDLE(t2, t1);
+    const Vector2 high = SPLITFUSION_LOW(t1) + SPLITFUSION_HIGH(t2);
     *reinterpret_cast<Vector4*>(y + 6 * i) = low;
     *reinterpret_cast<Vector2*>(y + 6 * i + 4) = high;
     dot4 += low * SPLITFUSION_LOAD4(own);
     dot2 += high * *reinterpret_cast<const Vector2*>(own + 4);
+  }
+  return SPLITFUSION_SUM4(dot4) + (dot2[0] + dot2[1]);
+}
+
+SPLITFUSION_WIDE
+double SolveFactorized(int size, const int* row_begin, const int* columns,
+                       const double* blocks, const double* x, double* y) {
+  std::copy_n(x, 6 * size, y);
+  // U^T: what is done with a row is handed on to the rows below.
+  for (int row = 0; row < size; ++row) {
+    const double* own = y + 6 * row;
+    const Vector4 m0 = SPLITFUSION_FILL4(own[0]);
+    const Vector4 m2 = SPLITFUSION_FILL4(own[1]);
+    const Vector4 m3 = SPLITFUSION_FILL4(own[2]);
+    const Vector4 m5 = SPLITFUSION_FILL4(own[3]);
+    const Vector4 m6 = SPLITFUSION_FILL4(own[4]);
+    const Vector4 m8 = SPLITFUSION_FILL4(own[5]);
+    const Vector4 m1 = SPLITFUSION_HALVES(m0, m2);
+    const Vector4 m4 = SPLITFUSION_HALVES(m3, m5);
+    const Vector4 m7 = SPLITFUSION_HALVES(m6, m8);
+    for (int k = row_begin[row] + 1; k < row_begin[row + 1]; ++k) {
+      const double* v = blocks + kBlock * k;
+      const Vector4 t0 =
+          (m0 * SPLITFUSION_LOAD4(v) + m3 * SPLITFUSION_LOAD4(v + 12)) +
+          m6 * SPLITFUSION_LOAD4(v + 24);
+      const Vector4 t1 =
+          (m1 * SPLITFUSION_LOAD4(v + 4) + m4 * SPLITFUSION_LOAD4(v + 16)) +
+          m7 * SPLITFUSION_LOAD4(v + 28);
+      const Vector4 t2 =
+          (m2 * SPLITFUSION_LOAD4(v + 8) + m5 * SPLITFUSION_LOAD4(v + 20)) +
+          m8 * SPLITFUSION_LOAD4(v + 32);
+      double* out = y + 6 * columns[k];
+      *reinterpret_cast<Vector4*>(out) += t0 + SPLITFUSION_MIDDLE(t2, t1);
+      *reinterpret_cast<Vector2*>(out + 4) +=
+          SPLITFUSION_LOW(t1) + SPLITFUSION_HIGH(t2);
+    }
+  }
+  // D and U: a row gathers from those below.
+  Vector4 dot4 = {0, 0, 0, 0};
+  Vector2 dot2 = {0, 0};
+  for (int row = size - 1; row >= 0; --row) {
+    Vector4 s0 = {0, 0, 0, 0}, s1 = s0, s2 = s0, s3 = s0, s4 = s0;
+    Vector4 s5 = s0, s6 = s0, s7 = s0, s8 = s0;
+    for (int k = row_begin[row]; k < row_begin[row + 1]; ++k) {
+      const double* v = blocks + kBlock * k;
+      const double* other = y + 6 * columns[k];
+      // Loaded as the row below has stored them a moment ago.
+      const Vector4 low = SPLITFUSION_LOAD4(other);
+      const Vector2 last = *reinterpret_cast<const Vector2*>(other + 4);
+      const Vector4 tail = __builtin_shufflevector(last, last, 0, 1, 0, 1);
+      const Vector4 high = __builtin_shufflevector(low, tail, 2, 3, 4, 5);
+      const Vector4 middle = __builtin_shufflevector(tail, low, 0, 1, 4, 5);
+      s0 += SPLITFUSION_LOAD4(v) * low;
+      s1 += SPLITFUSION_LOAD4(v + 4) * middle;
+      s2 += SPLITFUSION_LOAD4(v + 8) * high;
+      s3 += SPLITFUSION_LOAD4(v + 12) * low;
+      s4 += SPLITFUSION_LOAD4(v + 16) * middle;
+      s5 += SPLITFUSION_LOAD4(v + 20) * high;
+      s6 += SPLITFUSION_LOAD4(v + 24) * low;
+      s7 += SPLITFUSION_LOAD4(v + 28) * middle;
+      s8 += SPLITFUSION_LOAD4(v + 32) * high;
+    }
+    Vector2 a = {0, 0}, b = a, c = a;
+    SPLITFUSION_ADD_SUMS(s0, s1, s2, a);
+    SPLITFUSION_ADD_SUMS(s3, s4, s5, b);
+    SPLITFUSION_ADD_SUMS(s6, s7, s8, c);
+    const Vector4 ab = __builtin_shufflevector(a, b, 0, 1, 2, 3);
+    *reinterpret_cast<Vector4*>(y + 6 * row) = ab;
+    *reinterpret_cast<Vector2*>(y + 6 * row + 4) = c;
+    dot4 += ab * SPLITFUSION_LOAD4(x + 6 * row);
+    dot2 += c * *reinterpret_cast<const Vector2*>(x + 6 * row + 4);
   }
   return SPLITFUSION_SUM4(dot4) + (dot2[0] + dot2[1]);
 }

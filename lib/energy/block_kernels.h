@@ -14,6 +14,9 @@ namespace splitfusion {
 void AddOuterProducts(const double* rows, int count, int nodes, int first,
                       const int* slots, double* blocks);
 
+/// out += a^T b for blocks.
+void AddTransposedProduct(const double* a, const double* b, double* out);
+
 /// y = A x for a symmetric A of `size` block rows, of which row i holds the
 /// blocks row_begin[i] .. row_begin[i + 1] of the upper triangle, the diagonal
 /// first.
@@ -23,6 +26,11 @@ void MultiplySymmetric(int size, const int* row_begin, const int* columns,
 /// y_i = B_i x_i for `size` symmetric blocks B_i; returns x . y.
 double MultiplyDiagonal(int size, const double* blocks, const double* x,
                         double* y);
+
+/// Solves U^T D U y = x for a unit upper triangular U: row i holds D_i^-1 at
+/// row_begin[i] and -U_ij after it. Returns x . y.
+double SolveFactorized(int size, const int* row_begin, const int* columns,
+                       const double* blocks, const double* x, double* y);
 
 /// a . b of n numbers.
 double DotProduct(int n, const double* a, const double* b);

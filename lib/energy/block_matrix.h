@@ -1,6 +1,8 @@
 #ifndef SPLITFUSION_LIB_ENERGY_BLOCK_MATRIX_H_
 #define SPLITFUSION_LIB_ENERGY_BLOCK_MATRIX_H_
 
+#include <tbb/cache_aligned_allocator.h>
+
 #include <Eigen/Core>
 #include <utility>
 #include <vector>
@@ -11,6 +13,8 @@ namespace splitfusion {
 using Block6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 /// A node's share of a vector over all twists.
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+/// Many blocks, aligned for wide vectors.
+using Blocks6 = std::vector<Block6, tbb::cache_aligned_allocator<Block6>>;
 
 /// Symmetric positive semi-definite matrix of 6x6 blocks; the upper triangle is
 /// stored by rows, each beginning with the diagonal.
@@ -37,9 +41,9 @@ class SymmetricBlockMatrix {
   int Index(int row, int column) const;
 
   /// Blocks by their index; zero at first.
-  std::vector<Block6>& blocks() { return blocks_; }
+  Blocks6& blocks() { return blocks_; }
   /// Blocks by their index.
-  const std::vector<Block6>& blocks() const { return blocks_; }
+  const Blocks6& blocks() const { return blocks_; }
 
   /// Diagonal block of a row.
   const Block6& Diagonal(int row) const { return blocks_[row_begin_[row]]; }
@@ -52,7 +56,7 @@ class SymmetricBlockMatrix {
  private:
   std::vector<int> row_begin_;
   std::vector<int> columns_;
-  std::vector<Block6> blocks_;
+  Blocks6 blocks_;
 };
 
 }  // namespace splitfusion

@@ -138,7 +138,8 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
     report->iterations.push_back(
         {it.iteration, it.step_is_successful, it.cost, it.cost_change,
          it.gradient_max_norm, it.step_norm, it.trust_region_radius,
-         it.linear_solver_iterations, it.iteration_time_in_seconds});
+         it.linear_solver_iterations, /*linear_residual=*/0,
+         it.iteration_time_in_seconds});
   }
   if (full_report) report->full_report = summary.FullReport();
 }
@@ -146,18 +147,22 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
 }  // namespace
 
 void SolverOptions::Check() const {
-  CheckOption(solver == "ceres" || solver == "gn_pcg", "solver", solver,
-              "ceres or gn_pcg");
-  ceres::LinearSolverType solver;
   CheckOption(
-      linear_solver == "auto" ||
-          (ceres::StringToLinearSolverType(Upper(linear_solver), &solver) &&
-           linear_solver.find("schur") == std::string::npos),
-      "linear_solver", linear_solver,
-      "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
-      "or cgnr");
-  CheckOption(preconditioner == "jacobi" || preconditioner == "identity",
-              "preconditioner", preconditioner, "jacobi or identity");
+      solver == "gn_pcg" || solver == "gn_cholesky" || solver == "ceres",
+      "solver", solver, "gn_pcg, gn_cholesky or ceres");
+  ceres::LinearSolverType solver_type;
+  CheckOption(linear_solver == "auto" ||
+                  (ceres::StringToLinearSolverType(Upper(linear_solver),
+                                                   &solver_type) &&
+                   linear_solver.find("schur") == std::string::npos),
+              "linear_solver", linear_solver,
+              "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
+              "or cgnr");
+  const bool known = preconditioner == "identity" || preconditioner == "jacobi";
+  CheckOption(known || preconditioner == "block_ic0", "preconditioner",
+              preconditioner, "identity, jacobi or block_ic0");
+  CheckOption(known || solver == "gn_pcg", "preconditioner", preconditioner,
+              "identity or jacobi with solver " + solver);
   CheckOption(trust_region == "levenberg_marquardt" || trust_region == "dogleg",
               "trust_region", trust_region, "levenberg_marquardt or dogleg");
   CheckOption(trust_region != "dogleg" || linear_solver != "cgnr",

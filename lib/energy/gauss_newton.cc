@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/block_matrix.h"
 #include "splitfusion/lib/energy/block_problem.h"
-#include "splitfusion/lib/energy/pcg.h"
+#include "splitfusion/lib/energy/linear_solver.h"
 #include "splitfusion/lib/energy/solver.h"
 
 namespace splitfusion {
@@ -47,6 +48,7 @@ class GaussNewton {
       : options_(options),
         problem_(input, graph),
         matrix_(problem_.MakeMatrix()),
+        linear_solver_(MakeLinearSolver(options)),
         diagonal_(graph.size()),
         twists_(kTwistSize * graph.size(), 0.0),
         radius_(options.initial_radius) {
@@ -116,14 +118,11 @@ class GaussNewton {
   }
 
   /// Solves (J^T J + D / radius) x = -J^T r.
-  CgResult SolveStep() {
+  LinearSolution SolveStep() {
     Damp();
     std::vector<Vector6> right = gradient_;
     for (Vector6& v : right) v = -v;
-    const auto preconditioner =
-        MakePreconditioner(options_.preconditioner, matrix_);
-    return SolveByPcg(matrix_, *preconditioner, right, options_.eta,
-                      options_.max_linear_solver_iterations, &step_);
+    return linear_solver_->Solve(matrix_, right, &step_);
   }
 
   /// Iteration 0, the start, as Ceres reports it.
@@ -144,11 +143,12 @@ class GaussNewton {
     const Stopwatch watch;
     if (!linearized_) Linearize();
     iteration.gradient_max_norm = MaxNorm(gradient_);
-    const CgResult cg = SolveStep();
+    const LinearSolution solution = SolveStep();
     report_.linear_solver_seconds += watch.Seconds();
-    iteration.linear_solver_iterations = cg.iterations;
+    iteration.linear_solver_iterations = solution.iterations;
+    iteration.linear_residual = solution.relative_residual;
     iteration.step_norm = Norm(step_);
-    TryStep(&iteration);
+    TryStep(solution.usable, &iteration);
     iteration.cost = report_.final_cost;
     iteration.trust_region_radius = radius_;
     iteration.seconds = iteration_watch.Seconds();
@@ -156,9 +156,10 @@ class GaussNewton {
   }
 
   /// Takes the step if it does not raise the cost, and adapts the radius.
-  void TryStep(SolverIteration* iteration) {
+  void TryStep(bool usable, SolverIteration* iteration) {
     std::vector<double> moved = Moved(twists_, step_);
-    const bool finite = problem_.Evaluate(moved, /*with_jacobians=*/false);
+    const bool finite =
+        usable && problem_.Evaluate(moved, /*with_jacobians=*/false);
     const double cost = problem_.Cost();
     iteration->accepted = finite && cost <= report_.final_cost;
     iteration->cost_change = finite ? report_.final_cost - cost : 0;
@@ -184,6 +185,7 @@ class GaussNewton {
   const SolverOptions& options_;
   BlockProblem problem_;
   SymmetricBlockMatrix matrix_;
+  std::unique_ptr<LinearSolver> linear_solver_;
   std::vector<Vector6> diagonal_;  // Of J^T J, without damping.
   std::vector<double> twists_;
   double radius_;

@@ -42,7 +42,7 @@ class NodeResiduals {
 };
 
 /// The residuals of a template functor: kResiduals, and operator()(T const*
-/// const* twists, T* residual). Jets of six, one pass a node.
+/// const* twists, T* residual). Plain autodiff.
 template <typename Functor>
 class NodeResidualsOf : public NodeResiduals {
  public:
@@ -63,20 +63,11 @@ class NodeResidualsOf : public NodeResiduals {
     const int count = static_cast<int>(nodes(tuple).size());
     if (jacobian == nullptr) {
       if (!functor(twists, residuals)) return false;
-    } else if (count <= kFewNodes) {
-      Jet6 jets[kFewNodes * kTwistSize];
-      const Jet6* blocks[kFewNodes];
-      if (!Differentiate(functor, count, twists, jets, blocks, residuals,
-                         jacobian)) {
-        return false;
-      }
-    } else {
-      std::vector<Jet6> jets(count * kTwistSize);
-      std::vector<const Jet6*> blocks(count);
-      if (!Differentiate(functor, count, twists, jets.data(), blocks.data(),
-                         residuals, jacobian)) {
-        return false;
-      }
+    } else if (!(count <= kFewNodes ? DifferentiateFew(functor, count, twists,
+                                                       residuals, jacobian)
+                                    : DifferentiateMany(functor, count, twists,
+                                                        residuals, jacobian))) {
+      return false;
     }
     *cost = scaling().Apply(kDims, kTwistSize * count, residuals, jacobian);
     return true;
@@ -84,9 +75,29 @@ class NodeResidualsOf : public NodeResiduals {
 
  private:
   using Jet6 = ceres::Jet<double, kTwistSize>;
-  static constexpr int kFewNodes = 4;
+  /// Nodes for which there is room on the stack.
+  static constexpr int kFewNodes = 2;
 
-  /// One pass a node; `jets` and `blocks` are room for the twists.
+  static bool DifferentiateFew(const Functor& functor, int count,
+                               double const* const* twists, double* residuals,
+                               double* jacobian) {
+    Jet6 jets[kFewNodes * kTwistSize];
+    const Jet6* blocks[kFewNodes];
+    return Differentiate(functor, count, twists, jets, blocks, residuals,
+                         jacobian);
+  }
+
+  static bool DifferentiateMany(const Functor& functor, int count,
+                                double const* const* twists, double* residuals,
+                                double* jacobian) {
+    std::vector<Jet6> jets(count * kTwistSize);
+    std::vector<const Jet6*> blocks(count);
+    return Differentiate(functor, count, twists, jets.data(), blocks.data(),
+                         residuals, jacobian);
+  }
+
+  /// One pass a node: Jets of six are faster than wider ones. `jets` and
+  /// `blocks` are room for the twists.
   static bool Differentiate(const Functor& functor, int count,
                             double const* const* twists, Jet6* jets,
                             const Jet6** blocks, double* residuals,

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/energy/block_ic0.h"
 #include "splitfusion/lib/energy/block_kernels.h"
 
 namespace splitfusion {
@@ -39,7 +40,7 @@ class BlockJacobi : public Preconditioner {
   }
 
  private:
-  std::vector<Block6> inverse_;
+  Blocks6 inverse_;
 };
 
 }  // namespace
@@ -47,7 +48,9 @@ class BlockJacobi : public Preconditioner {
 std::unique_ptr<Preconditioner> MakePreconditioner(
     const std::string& name, const SymmetricBlockMatrix& matrix) {
   if (name == "identity") return std::make_unique<Identity>();
-  CheckOption(name == "jacobi", "preconditioner", name, "identity or jacobi");
+  if (name == "block_ic0") return std::make_unique<BlockIc0>(matrix);
+  CheckOption(name == "jacobi", "preconditioner", name,
+              "identity, jacobi or block_ic0");
   return std::make_unique<BlockJacobi>(matrix);
 }
 
