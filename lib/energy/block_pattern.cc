@@ -16,9 +16,7 @@ void BlockPattern::Add(const int* nodes, int count, int rows, bool may_sum) {
   block.summed = may_sum && rows > 3 * (count + 1);
   block.offset = value_count_;
   nodes_.insert(nodes_.end(), nodes, nodes + count);
-  const std::size_t size =
-      block.summed ? 18 * count * (count + 1) : 6 * count * rows;
-  value_count_ = block.matrix_offset() + size;
+  value_count_ = block.matrix_offset() + block.matrix_size();
   blocks_.push_back(block);
 }
 

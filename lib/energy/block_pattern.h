@@ -24,6 +24,10 @@ class BlockPattern {
 
     /// Where the Jacobian or the sums begin.
     std::size_t matrix_offset() const { return offset + 6 * count; }
+    /// Numbers that they take.
+    std::size_t matrix_size() const {
+      return summed ? 18 * count * (count + 1) : 6 * count * rows;
+    }
   };
 
   /// Adds a block. `nodes` are ascending; `may_sum`: it can be summed, and will

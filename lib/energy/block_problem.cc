@@ -17,16 +17,11 @@ constexpr int kChunk = 32;
 /// Blocks of a task.
 constexpr int kGrain = 64;
 
-/// The places 0, 1, 2, ...
-const int* InOrder() {
-  static const std::array<int, kMaxSkinningNodes> order = [] {
-    std::array<int, kMaxSkinningNodes> values;
-    std::iota(values.begin(), values.end(), 0);
-    return values;
-  }();
-  return order.data();
-}
+/// The places of a group's nodes in its own sums.
+constexpr std::array<int, kMaxSkinningNodes> kInOrder = {0, 1, 2, 3,
+                                                         4, 5, 6, 7};
 
+/// gradient += J^T r
 void AddGradient(const double* residuals, const double* rows, int count,
                  int columns, double* gradient) {
   for (int r = 0; r < count; ++r, rows += columns) {
@@ -42,6 +37,7 @@ struct BlockProblem::GroupRoom {
       : residuals(kChunk * dims),
         by_point(3 * kChunk * dims),
         rows(kChunk * dims * kTwistSize * kMaxSkinningNodes) {}
+  std::array<const TwistedNode*, kMaxSkinningNodes> nodes;
   std::array<double, 3 * kChunk> warped;
   std::array<double, 3 * kChunk * kMaxSkinningNodes> carried;
   std::vector<double> residuals;
@@ -160,54 +156,58 @@ void BlockProblem::EvaluateGroup(const PointSet& set, int index,
                                  bool with_jacobians, GroupRoom* room) {
   const WarpedPoints::Group& group = set.points->groups()[index];
   const BlockPattern::Block& block = pattern_.blocks()[set.first_block + index];
-  const int columns = kTwistSize * group.node_count;
   double* gradient = &values_[block.offset];
   double* matrix = &values_[block.matrix_offset()];
-  if (with_jacobians) {
-    std::fill(gradient,
-              block.summed
-                  ? gradient + columns + 3 * columns * (group.node_count + 1)
-                  : matrix,
-              0.0);
-  }
   for (const PointPart& part : set.parts) costs_[part.term][index] = 0;
-  std::array<const TwistedNode*, kMaxSkinningNodes> nodes;
   for (int k = 0; k < group.node_count; ++k) {
-    nodes[k] = &twisted_[group.nodes[k]];
+    room->nodes[k] = &twisted_[group.nodes[k]];
   }
-  double* rows = matrix;
+  if (with_jacobians) {
+    std::fill(gradient, matrix, 0.0);
+    if (block.summed) std::fill_n(matrix, block.matrix_size(), 0.0);
+  }
   for (int begin = group.begin; begin < group.end; begin += kChunk) {
     const int end = std::min(begin + kChunk, group.end);
-    set.points->Warp(group, begin, end, nodes.data(), room->warped.data(),
-                     room->carried.data());
-    if (block.summed) rows = room->rows.data();
-    const double* chunk = rows;
-    for (const PointPart& part : set.parts) {
-      double* cost = &costs_[part.term][index];
-      if (!part.residuals->Evaluate(
-              &set.points->source()[begin], end - begin, room->warped.data(),
-              room->residuals.data(),
-              with_jacobians ? room->by_point.data() : nullptr, cost)) {
-        *cost = std::nan("");
-      }
-      if (!with_jacobians) continue;
-      const int dims = part.residuals->dims();
-      for (int r = 0; r < dims * (end - begin); ++r) {
-        const int point = r / dims;
-        set.points->DifferentiateByTwists(
-            group, begin + point, nodes.data(),
-            &room->carried[3 * group.node_count * point],
-            &room->by_point[3 * r], rows);
-        AddGradient(&room->residuals[r], rows, 1, columns, gradient);
-        rows += columns;
-      }
-    }
+    const int row = set.dims * (begin - group.begin);
+    double* rows = block.summed ? room->rows.data()
+                                : matrix + kTwistSize * group.node_count * row;
+    EvaluateChunk(set, index, begin, end, with_jacobians ? rows : nullptr,
+                  gradient, room);
     if (!with_jacobians || !block.summed) continue;
     double* sums = matrix;
     for (int k = 0; k < group.node_count; ++k) {
-      AddOuterProducts(chunk, set.dims * (end - begin), group.node_count, k,
-                       InOrder(), sums);
+      AddOuterProducts(rows, set.dims * (end - begin), group.node_count, k,
+                       kInOrder.data(), sums);
       sums += 36 * (group.node_count - k);
+    }
+  }
+}
+
+void BlockProblem::EvaluateChunk(const PointSet& set, int index, int begin,
+                                 int end, double* rows, double* gradient,
+                                 GroupRoom* room) {
+  const WarpedPoints::Group& group = set.points->groups()[index];
+  set.points->Warp(group, begin, end, room->nodes.data(), room->warped.data(),
+                   room->carried.data());
+  for (const PointPart& part : set.parts) {
+    double* cost = &costs_[part.term][index];
+    if (!part.residuals->Evaluate(
+            &set.points->source()[begin], end - begin, room->warped.data(),
+            room->residuals.data(),
+            rows == nullptr ? nullptr : room->by_point.data(), cost)) {
+      *cost = std::nan("");
+    }
+    if (rows == nullptr) continue;
+    const int dims = part.residuals->dims();
+    for (int r = 0; r < dims * (end - begin); ++r) {
+      const int point = r / dims;
+      set.points->DifferentiateByTwists(
+          group, begin + point, room->nodes.data(),
+          &room->carried[3 * group.node_count * point], &room->by_point[3 * r],
+          rows);
+      AddGradient(&room->residuals[r], rows, 1, kTwistSize * group.node_count,
+                  gradient);
+      rows += kTwistSize * group.node_count;
     }
   }
 }

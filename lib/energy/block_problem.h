@@ -75,6 +75,9 @@ class BlockProblem {
   void EvaluatePoints(const PointSet& set, bool with_jacobians);
   void EvaluateGroup(const PointSet& set, int index, bool with_jacobians,
                      GroupRoom* room);
+  /// Points begin..end of a group. `rows`: room for their Jacobian, or null.
+  void EvaluateChunk(const PointSet& set, int index, int begin, int end,
+                     double* rows, double* gradient, GroupRoom* room);
   void EvaluateTuples(const TupleSet& set, const std::vector<double>& twists,
                       bool with_jacobians);
   void EvaluateTuple(const TupleSet& set, int tuple,

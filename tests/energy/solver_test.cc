@@ -329,6 +329,25 @@ TEST_P(BentPlateProblem, NodesWithoutAnyPointStayWhereThePriorHoldsThem) {
   }
 }
 
+TEST_P(BentPlateProblem, ThreadsDoNotChangeAByteOfALargerProblem) {
+  const TriangleMesh mesh = CornerMesh(0.005);
+  DeformationGraph graph = CoverWithNodes(mesh, 0.02);
+  const auto correspondences = PerfectAssociation(
+      mesh, graph, [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  const Energy energy = EnergyWithCustomTerm();
+  SolverOptions options;
+  options.solver = GetParam();
+  DeformationGraph results[2] = {graph, graph};
+  for (const int threads : {1, 2}) {
+    const tbb::global_control control(
+        tbb::global_control::max_allowed_parallelism, threads);
+    Minimize({energy, correspondences, PinholeCamera()}, options,
+             &results[threads - 1]);
+  }
+  EXPECT_TRUE(SameBytes(results[0], results[1]));
+  EXPECT_FALSE(SameBytes(results[0], graph));
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, BentPlateProblem,
                          ::testing::Values("ceres", "gn_pcg", "gn_cholesky"));
 
