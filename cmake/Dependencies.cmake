@@ -10,6 +10,10 @@ message(STATUS "Libraries: Ceres ${Ceres_VERSION}, Eigen ${Eigen3_VERSION}, "
                "OpenCV ${OpenCV_VERSION}, OpenVDB ${OpenVDB_VERSION}, "
                "PCL ${PCL_VERSION}, TBB ${TBB_VERSION}")
 
+# CHOLMOD comes with Ceres, without a package config of its own.
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+
 if(SPLITFUSION_BUILD_TOOLS)
   find_package(gflags REQUIRED)
   find_package(glog REQUIRED)
@@ -27,6 +31,7 @@ function(splitfusion_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC Eigen3::Eigen Ceres::ceres opencv_core opencv_imgproc
            opencv_imgcodecs TBB::tbb nlohmann_json::nlohmann_json
-    PRIVATE opencv_dnn OpenVDB::openvdb pcl_kdtree)
-  target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS})
+    PRIVATE opencv_dnn OpenVDB::openvdb pcl_kdtree cholmod)
+  target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS}
+                             ${CHOLMOD_INCLUDE_DIR})
 endfunction()

@@ -32,11 +32,13 @@ DEFINE_string(merge_touching, "",
 DEFINE_string(terms, splitfusion::PipelineOptions().terms,
               "The energy: NAME(weight=,loss=,scale=) ...");
 DEFINE_double(prior_anneal, 8, "First factor on the priors' weights.");
-DEFINE_string(solver, "gn_pcg", "gn_pcg (block Gauss-Newton) or ceres.");
+DEFINE_string(solver, "gn_pcg",
+              "gn_pcg or gn_cholesky (block Gauss-Newton), or ceres.");
 DEFINE_string(linear_solver, "auto",
               "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
               "or cgnr.");
-DEFINE_string(preconditioner, "jacobi", "Of cgnr: jacobi or identity.");
+DEFINE_string(preconditioner, "jacobi",
+              "Of gn_pcg and cgnr: jacobi or identity; of gn_pcg: block_ic0.");
 DEFINE_string(trust_region, "levenberg_marquardt",
               "levenberg_marquardt or dogleg.");
 DEFINE_int32(solver_threads, 1,

@@ -1,35 +1,49 @@
 #ifndef SPLITFUSION_LIB_ENERGY_BLOCK_MATRIX_H_
 #define SPLITFUSION_LIB_ENERGY_BLOCK_MATRIX_H_
 
+#include <tbb/cache_aligned_allocator.h>
+
 #include <Eigen/Core>
 #include <utility>
 #include <vector>
 
 namespace splitfusion {
 
-/// A 6x6 block and a 6-vector: one node's share of the normal equations.
-using Block6 = Eigen::Matrix<double, 6, 6>;
+/// A 6x6 block, one node pair's share of the normal equations.
+using Block6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 /// A node's share of a vector over all twists.
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+/// Many blocks, aligned for wide vectors.
+using Blocks6 = std::vector<Block6, tbb::cache_aligned_allocator<Block6>>;
 
 /// Symmetric positive semi-definite matrix of 6x6 blocks; the upper triangle is
-/// stored by rows.
+/// stored by rows, each beginning with the diagonal.
 class SymmetricBlockMatrix {
  public:
   /// `pairs`: block positions (row, column), row <= column, any order,
   /// repetitions allowed; the diagonal is always there.
   SymmetricBlockMatrix(int nodes, std::vector<std::pair<int, int>> pairs);
 
+  /// Row i holds the columns row_begin[i] .. row_begin[i + 1] of `columns`,
+  /// ascending from i itself.
+  SymmetricBlockMatrix(std::vector<int> row_begin, std::vector<int> columns);
+
   /// Number of block rows.
   int size() const { return static_cast<int>(row_begin_.size()) - 1; }
   /// Number of stored blocks.
   std::size_t block_count() const { return columns_.size(); }
+  /// Where the rows begin among the blocks, and where the last one ends.
+  const std::vector<int>& row_begin() const { return row_begin_; }
+  /// Block columns of all blocks.
+  const std::vector<int>& columns() const { return columns_; }
 
   /// Where block (row, column) is stored; row <= column and it is in `pairs`.
   int Index(int row, int column) const;
 
   /// Blocks by their index; zero at first.
-  std::vector<Block6>& blocks() { return blocks_; }
+  Blocks6& blocks() { return blocks_; }
+  /// Blocks by their index.
+  const Blocks6& blocks() const { return blocks_; }
 
   /// Diagonal block of a row.
   const Block6& Diagonal(int row) const { return blocks_[row_begin_[row]]; }
@@ -42,22 +56,8 @@ class SymmetricBlockMatrix {
  private:
   std::vector<int> row_begin_;
   std::vector<int> columns_;
-  std::vector<Block6> blocks_;
+  Blocks6 blocks_;
 };
-
-/// Outcome of a conjugate gradient solution.
-struct CgResult {
-  /// Products with A.
-  int iterations = 0;
-  double relative_residual = 0;  ///< |b - A x| / |b|
-};
-
-/// Solves A x = b by conjugate gradients from x = 0, preconditioned by the
-/// inverses of the diagonal blocks, until the relative residual is below
-/// `tolerance` or `max_iterations` are done.
-CgResult SolveByPcg(const SymmetricBlockMatrix& a,
-                    const std::vector<Vector6>& b, double tolerance,
-                    int max_iterations, std::vector<Vector6>* x);
 
 }  // namespace splitfusion
 

@@ -2,137 +2,260 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
+#include <numeric>
+
+#include "splitfusion/lib/energy/block_kernels.h"
 
 namespace splitfusion {
 namespace {
 
-/// Parts of the assembly; fixed, so that sums do not depend on threads.
-constexpr int kParts = 4;
+/// Points of a group that are evaluated at a time.
+constexpr int kChunk = 32;
+/// Blocks of a task.
+constexpr int kGrain = 64;
+
+/// The places of a group's nodes in its own sums.
+constexpr std::array<int, kMaxSkinningNodes> kInOrder = {0, 1, 2, 3,
+                                                         4, 5, 6, 7};
+
+/// gradient += J^T r
+void AddGradient(const double* residuals, const double* rows, int count,
+                 int columns, double* gradient) {
+  for (int r = 0; r < count; ++r, rows += columns) {
+    for (int c = 0; c < columns; ++c) gradient[c] += residuals[r] * rows[c];
+  }
+}
 
 }  // namespace
 
+/// What the evaluation of a group needs besides its values.
+struct BlockProblem::GroupRoom {
+  explicit GroupRoom(int dims)
+      : residuals(kChunk * dims),
+        by_point(3 * kChunk * dims),
+        rows(kChunk * dims * kTwistSize * kMaxSkinningNodes) {}
+  std::array<const TwistedNode*, kMaxSkinningNodes> nodes;
+  std::array<double, 3 * kChunk> warped;
+  std::array<double, 3 * kChunk * kMaxSkinningNodes> carried;
+  std::vector<double> residuals;
+  std::vector<double> by_point;
+  std::vector<double> rows;
+};
+
+/// The same for a tuple.
+struct BlockProblem::TupleRoom {
+  std::vector<const double*> twists;
+  std::vector<double> residuals;
+  std::vector<double> jacobian;
+};
+
 BlockProblem::BlockProblem(const SurfaceProblem& problem,
                            const DeformationGraph& graph)
-    : terms_(CollectBlocks(problem, graph)), nodes_(graph.size()) {
+    : graph_(graph),
+      terms_(CollectResiduals(problem, graph)),
+      twisted_(graph.size()) {
   for (std::size_t t = 0; t < terms_.size(); ++t) {
-    for (const ResidualBlock& block : terms_[t].blocks) {
-      EvaluatedBlock evaluated{&block, static_cast<int>(t), 0, {}, {}};
-      const int rows = block.cost->num_residuals();
-      evaluated.residuals.resize(rows);
-      evaluated.jacobians.assign(block.nodes.size(), Jacobian(rows, 6));
-      residual_count_ += rows;
-      blocks_.push_back(std::move(evaluated));
+    const TermResiduals& residuals = terms_[t].residuals;
+    const int term = static_cast<int>(t);
+    if (residuals.points != nullptr) AddPoints(term, residuals);
+    if (residuals.of_nodes != nullptr) {
+      tuple_sets_.push_back({term, residuals.of_nodes.get(), 0, 0});
     }
   }
+  MakeBlocks();
+}
+
+void BlockProblem::AddPoints(int term, const TermResiduals& residuals) {
+  auto set = std::find_if(
+      point_sets_.begin(), point_sets_.end(),
+      [&](const PointSet& s) { return s.points == residuals.points.get(); });
+  if (set == point_sets_.end()) {
+    set = point_sets_.insert(set, {residuals.points.get(), {}, 0, 0});
+  }
+  set->parts.push_back({term, residuals.of_points.get()});
+  set->dims += residuals.of_points->dims();
+}
+
+void BlockProblem::MakeBlocks() {
+  costs_.resize(terms_.size());
+  for (PointSet& set : point_sets_) {
+    set.first_block = static_cast<int>(pattern_.blocks().size());
+    for (const WarpedPoints::Group& group : set.points->groups()) {
+      pattern_.Add(group.nodes, group.node_count,
+                   set.dims * (group.end - group.begin), /*may_sum=*/true);
+    }
+    for (const PointPart& part : set.parts) {
+      costs_[part.term].assign(set.points->groups().size(), 0.0);
+    }
+  }
+  std::vector<int> nodes;
+  for (TupleSet& set : tuple_sets_) {
+    set.first_block = static_cast<int>(pattern_.blocks().size());
+    for (int i = 0; i < set.residuals->size(); ++i) {
+      nodes = set.residuals->nodes(i);
+      std::sort(nodes.begin(), nodes.end());
+      pattern_.Add(nodes.data(), static_cast<int>(nodes.size()),
+                   set.residuals->dims(), /*may_sum=*/false);
+    }
+    std::vector<double>& costs = costs_[set.term];
+    set.first_cost = static_cast<int>(costs.size());
+    costs.resize(costs.size() + set.residuals->size());
+  }
+  for (const BlockPattern::Block& b : pattern_.blocks()) {
+    residual_count_ += b.rows;
+  }
+  pattern_.Finish(graph_.size());
+  values_.reset(new double[pattern_.value_count()]);
 }
 
 bool BlockProblem::Evaluate(const std::vector<double>& twists,
                             bool with_jacobians) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_.size(), 64),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i < range.end();
-                           ++i) {
-                        EvaluateBlock(twists, with_jacobians, &blocks_[i]);
-                      }
-                    });
+  for (int i = 0; i < graph_.size(); ++i) {
+    twisted_[i] = TwistNode(graph_, i, &twists[kTwistSize * i]);
+  }
+  for (const PointSet& set : point_sets_) EvaluatePoints(set, with_jacobians);
+  for (const TupleSet& set : tuple_sets_) {
+    EvaluateTuples(set, twists, with_jacobians);
+  }
   return std::isfinite(Cost());
 }
 
 double BlockProblem::Cost() const {
-  double sum = 0;
-  for (const EvaluatedBlock& block : blocks_) sum += block.cost;
-  return sum;
+  const std::vector<double> costs = TermCosts();
+  return std::accumulate(costs.begin(), costs.end(), 0.0);
 }
 
 std::vector<double> BlockProblem::TermCosts() const {
-  std::vector<double> costs(terms_.size(), 0.0);
-  for (const EvaluatedBlock& block : blocks_) costs[block.term] += block.cost;
-  return costs;
-}
-
-SymmetricBlockMatrix BlockProblem::MakeMatrix() const {
-  std::vector<std::pair<int, int>> pairs;
-  for (const EvaluatedBlock& block : blocks_) {
-    const std::vector<int>& nodes = block.block->nodes;
-    for (const int a : nodes) {
-      for (const int b : nodes) {
-        if (a < b) pairs.emplace_back(a, b);
-      }
-    }
+  std::vector<double> costs;
+  for (const std::vector<double>& blocks : costs_) {
+    costs.push_back(std::accumulate(blocks.begin(), blocks.end(), 0.0));
   }
-  return SymmetricBlockMatrix(nodes_, std::move(pairs));
+  return costs;
 }
 
 void BlockProblem::Assemble(SymmetricBlockMatrix* matrix,
                             std::vector<Vector6>* gradient) const {
-  std::vector<std::vector<Block6>> blocks(
-      kParts, std::vector<Block6>(matrix->block_count(), Block6::Zero()));
-  std::vector<std::vector<Vector6>> gradients(
-      kParts, std::vector<Vector6>(nodes_, Vector6::Zero()));
-  tbb::parallel_for(0, kParts, [&](int part) {
-    const std::size_t begin = blocks_.size() * part / kParts;
-    const std::size_t end = blocks_.size() * (part + 1) / kParts;
-    for (std::size_t i = begin; i < end; ++i) {
-      Accumulate(blocks_[i], *matrix, &blocks[part], &gradients[part]);
-    }
-  });
-  for (std::size_t k = 0; k < matrix->block_count(); ++k) {
-    Block6& sum = matrix->blocks()[k];
-    sum = blocks[0][k];
-    for (int part = 1; part < kParts; ++part) sum += blocks[part][k];
+  pattern_.Assemble(values_.get(), matrix, gradient);
+}
+
+void BlockProblem::EvaluatePoints(const PointSet& set, bool with_jacobians) {
+  const int groups = static_cast<int>(set.points->groups().size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, groups, kGrain / 4),
+                    [&](const tbb::blocked_range<int>& range) {
+                      GroupRoom room(set.dims);
+                      for (int g = range.begin(); g < range.end(); ++g) {
+                        EvaluateGroup(set, g, with_jacobians, &room);
+                      }
+                    });
+}
+
+void BlockProblem::EvaluateGroup(const PointSet& set, int index,
+                                 bool with_jacobians, GroupRoom* room) {
+  const WarpedPoints::Group& group = set.points->groups()[index];
+  const BlockPattern::Block& block = pattern_.blocks()[set.first_block + index];
+  double* gradient = &values_[block.offset];
+  double* matrix = &values_[block.matrix_offset()];
+  for (const PointPart& part : set.parts) costs_[part.term][index] = 0;
+  for (int k = 0; k < group.node_count; ++k) {
+    room->nodes[k] = &twisted_[group.nodes[k]];
   }
-  gradient->assign(nodes_, Vector6::Zero());
-  for (int i = 0; i < nodes_; ++i) {
-    for (int part = 0; part < kParts; ++part) {
-      (*gradient)[i] += gradients[part][i];
+  if (with_jacobians) {
+    std::fill(gradient, matrix, 0.0);
+    if (block.summed) std::fill_n(matrix, block.matrix_size(), 0.0);
+  }
+  for (int begin = group.begin; begin < group.end; begin += kChunk) {
+    const int end = std::min(begin + kChunk, group.end);
+    const int row = set.dims * (begin - group.begin);
+    double* rows = block.summed ? room->rows.data()
+                                : matrix + kTwistSize * group.node_count * row;
+    EvaluateChunk(set, index, begin, end, with_jacobians ? rows : nullptr,
+                  gradient, room);
+    if (!with_jacobians || !block.summed) continue;
+    double* sums = matrix;
+    for (int k = 0; k < group.node_count; ++k) {
+      AddOuterProducts(rows, set.dims * (end - begin), group.node_count, k,
+                       kInOrder.data(), sums);
+      sums += 36 * (group.node_count - k);
     }
   }
 }
 
-void BlockProblem::EvaluateBlock(const std::vector<double>& twists,
-                                 bool with_jacobians, EvaluatedBlock* out) {
-  const ResidualBlock& block = *out->block;
-  std::vector<const double*> parameters;
-  std::vector<double*> jacobians;
-  for (std::size_t k = 0; k < block.nodes.size(); ++k) {
-    parameters.push_back(&twists[kTwistSize * block.nodes[k]]);
-    jacobians.push_back(out->jacobians[k].data());
-  }
-  if (!block.cost->Evaluate(parameters.data(), out->residuals.data(),
-                            with_jacobians ? jacobians.data() : nullptr)) {
-    out->cost = std::nan("");
-    return;
-  }
-  const double squared = out->residuals.squaredNorm();
-  out->cost = 0.5 * squared;
-  if (block.loss == nullptr) return;
-  // Ceres' corrector for rho'' <= 0: residual and Jacobian by sqrt(rho').
-  double rho[3];
-  block.loss->Evaluate(squared, rho);
-  out->cost = 0.5 * rho[0];
-  const double root = std::sqrt(rho[1]);
-  out->residuals *= root;
-  for (Jacobian& jacobian : out->jacobians) {
-    if (with_jacobians) jacobian *= root;
+void BlockProblem::EvaluateChunk(const PointSet& set, int index, int begin,
+                                 int end, double* rows, double* gradient,
+                                 GroupRoom* room) {
+  const WarpedPoints::Group& group = set.points->groups()[index];
+  set.points->Warp(group, begin, end, room->nodes.data(), room->warped.data(),
+                   room->carried.data());
+  for (const PointPart& part : set.parts) {
+    double* cost = &costs_[part.term][index];
+    if (!part.residuals->Evaluate(
+            &set.points->source()[begin], end - begin, room->warped.data(),
+            room->residuals.data(),
+            rows == nullptr ? nullptr : room->by_point.data(), cost)) {
+      *cost = std::nan("");
+    }
+    if (rows == nullptr) continue;
+    const int dims = part.residuals->dims();
+    for (int r = 0; r < dims * (end - begin); ++r) {
+      const int point = r / dims;
+      set.points->DifferentiateByTwists(
+          group, begin + point, room->nodes.data(),
+          &room->carried[3 * group.node_count * point], &room->by_point[3 * r],
+          rows);
+      AddGradient(&room->residuals[r], rows, 1, kTwistSize * group.node_count,
+                  gradient);
+      rows += kTwistSize * group.node_count;
+    }
   }
 }
 
-void BlockProblem::Accumulate(const EvaluatedBlock& block,
-                              const SymmetricBlockMatrix& matrix,
-                              std::vector<Block6>* blocks,
-                              std::vector<Vector6>* gradient) {
-  const std::vector<int>& nodes = block.block->nodes;
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    const Jacobian& ja = block.jacobians[a];
-    (*gradient)[nodes[a]].noalias() += ja.transpose() * block.residuals;
-    for (std::size_t b = 0; b < nodes.size(); ++b) {
-      if (nodes[b] < nodes[a]) continue;
-      (*blocks)[matrix.Index(nodes[a], nodes[b])].noalias() +=
-          ja.transpose().lazyProduct(block.jacobians[b]);
+void BlockProblem::EvaluateTuples(const TupleSet& set,
+                                  const std::vector<double>& twists,
+                                  bool with_jacobians) {
+  tbb::parallel_for(tbb::blocked_range<int>(0, set.residuals->size(), kGrain),
+                    [&](const tbb::blocked_range<int>& range) {
+                      TupleRoom room;
+                      for (int i = range.begin(); i < range.end(); ++i) {
+                        EvaluateTuple(set, i, twists, with_jacobians, &room);
+                      }
+                    });
+}
+
+void BlockProblem::EvaluateTuple(const TupleSet& set, int tuple,
+                                 const std::vector<double>& twists,
+                                 bool with_jacobians, TupleRoom* room) {
+  const std::vector<int>& nodes = set.residuals->nodes(tuple);
+  const BlockPattern::Block& block = pattern_.blocks()[set.first_block + tuple];
+  const int columns = kTwistSize * block.count;
+  room->twists.clear();
+  for (const int node : nodes)
+    room->twists.push_back(&twists[kTwistSize * node]);
+  room->residuals.resize(block.rows);
+  room->jacobian.resize(block.rows * columns);
+  double* cost = &costs_[set.term][set.first_cost + tuple];
+  if (!set.residuals->Evaluate(
+          tuple, room->twists.data(), room->residuals.data(),
+          with_jacobians ? room->jacobian.data() : nullptr, cost)) {
+    *cost = std::nan("");
+  }
+  if (!with_jacobians) return;
+  // From the functor's order to ascending nodes.
+  double* rows = &values_[block.matrix_offset()];
+  const int* sorted = pattern_.nodes(block);
+  for (int k = 0; k < block.count; ++k) {
+    const int rank = static_cast<int>(
+        std::lower_bound(sorted, sorted + block.count, nodes[k]) - sorted);
+    for (int r = 0; r < block.rows; ++r) {
+      std::copy_n(&room->jacobian[r * columns + kTwistSize * k], kTwistSize,
+                  rows + r * columns + kTwistSize * rank);
     }
   }
+  double* gradient = &values_[block.offset];
+  std::fill_n(gradient, columns, 0.0);
+  AddGradient(room->residuals.data(), rows, block.rows, columns, gradient);
 }
 
 }  // namespace splitfusion

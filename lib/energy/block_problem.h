@@ -1,21 +1,26 @@
 #ifndef SPLITFUSION_LIB_ENERGY_BLOCK_PROBLEM_H_
 #define SPLITFUSION_LIB_ENERGY_BLOCK_PROBLEM_H_
 
-#include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "splitfusion/lib/energy/block_matrix.h"
+#include "splitfusion/lib/energy/block_pattern.h"
 #include "splitfusion/lib/energy/solver.h"
-#include "splitfusion/lib/energy/term_blocks.h"
+#include "splitfusion/lib/energy/term_residuals.h"
 
 namespace splitfusion {
 
-/// The energy of one surface as residual blocks over the twists of its nodes,
-/// with their values and the normal equations. Sums do not depend on the number
-/// of threads.
+/// The energy of one surface over the twists of its nodes, with its values and
+/// normal equations. Sums do not depend on the number of threads: every sum is
+/// taken by one thread in the order of the blocks.
+///
+/// A block is what shares its nodes: a group of warped points, with the
+/// residuals of all terms over these points, or one node tuple of one term.
 class BlockProblem {
  public:
-  /// Gathers the blocks of all terms; `problem` and `graph` must outlive this.
+  /// Gathers the residuals of all terms; `problem` and `graph` must outlive
+  /// this.
   BlockProblem(const SurfaceProblem& problem, const DeformationGraph& graph);
   BlockProblem(const BlockProblem&) = delete;             ///< Not copied.
   BlockProblem& operator=(const BlockProblem&) = delete;  ///< Not copied.
@@ -30,7 +35,7 @@ class BlockProblem {
   std::vector<double> TermCosts() const;
 
   /// Matrix with a block wherever two nodes share a residual block.
-  SymmetricBlockMatrix MakeMatrix() const;
+  SymmetricBlockMatrix MakeMatrix() const { return pattern_.MakeMatrix(); }
 
   /// Sums J^T J and the gradient J^T r of all blocks as evaluated last with
   /// Jacobians; `matrix` is one of MakeMatrix().
@@ -38,33 +43,56 @@ class BlockProblem {
                 std::vector<Vector6>* gradient) const;
 
   /// Terms of the energy.
-  const std::vector<TermBlocks>& terms() const { return terms_; }
+  const std::vector<ProblemTerm>& terms() const { return terms_; }
   /// Number of scalar residuals.
   int residual_count() const { return residual_count_; }
 
  private:
-  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
-
-  /// One residual block with room for its values.
-  struct EvaluatedBlock {
-    const ResidualBlock* block;
+  /// Residuals of one term over common points.
+  struct PointPart {
     int term;
-    double cost = 0;  // 1/2 rho(|r|^2)
-    Eigen::VectorXd residuals;
-    std::vector<Jacobian> jacobians;  // By node of the block.
+    const PointResiduals* residuals;
   };
+  /// Terms that share their points.
+  struct PointSet {
+    const WarpedPoints* points;
+    std::vector<PointPart> parts;
+    int dims = 0;  // Residuals of a point, all parts.
+    int first_block = 0;
+  };
+  /// Tuples of one term.
+  struct TupleSet {
+    int term;
+    const NodeResiduals* residuals;
+    int first_block = 0;
+    int first_cost = 0;
+  };
+  struct GroupRoom;
+  struct TupleRoom;
 
-  static void EvaluateBlock(const std::vector<double>& twists,
-                            bool with_jacobians, EvaluatedBlock* out);
-  static void Accumulate(const EvaluatedBlock& block,
-                         const SymmetricBlockMatrix& matrix,
-                         std::vector<Block6>* blocks,
-                         std::vector<Vector6>* gradient);
+  void AddPoints(int term, const TermResiduals& residuals);
+  void MakeBlocks();
+  void EvaluatePoints(const PointSet& set, bool with_jacobians);
+  void EvaluateGroup(const PointSet& set, int index, bool with_jacobians,
+                     GroupRoom* room);
+  /// Points begin..end of a group. `rows`: room for their Jacobian, or null.
+  void EvaluateChunk(const PointSet& set, int index, int begin, int end,
+                     double* rows, double* gradient, GroupRoom* room);
+  void EvaluateTuples(const TupleSet& set, const std::vector<double>& twists,
+                      bool with_jacobians);
+  void EvaluateTuple(const TupleSet& set, int tuple,
+                     const std::vector<double>& twists, bool with_jacobians,
+                     TupleRoom* room);
 
-  std::vector<TermBlocks> terms_;
-  int nodes_;
+  const DeformationGraph& graph_;
+  std::vector<ProblemTerm> terms_;
+  std::vector<PointSet> point_sets_;
+  std::vector<TupleSet> tuple_sets_;
   int residual_count_ = 0;
-  std::vector<EvaluatedBlock> blocks_;
+  BlockPattern pattern_;
+  std::vector<TwistedNode> twisted_;
+  std::vector<std::vector<double>> costs_;  // By term and block of the term.
+  std::unique_ptr<double[]> values_;        // See BlockPattern::Block.
 };
 
 }  // namespace splitfusion

@@ -7,8 +7,9 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/energy/ceres_blocks.h"
 #include "splitfusion/lib/energy/solver.h"
-#include "splitfusion/lib/energy/term_blocks.h"
+#include "splitfusion/lib/energy/term_residuals.h"
 
 namespace splitfusion {
 namespace {
@@ -19,7 +20,7 @@ std::string Upper(std::string text) {
   return text;
 }
 
-/// The Ceres problem of one minimisation; it owns twists and losses.
+/// The Ceres problem of one minimisation; it owns the twists.
 class CeresProblem {
  public:
   CeresProblem(const SurfaceProblem& input, const DeformationGraph& graph)
@@ -27,10 +28,10 @@ class CeresProblem {
     for (int i = 0; i < graph.size(); ++i) {
       problem_.AddParameterBlock(&twists_[kTwistSize * i], kTwistSize);
     }
-    for (TermBlocks& term : CollectBlocks(input, graph)) {
+    for (const ProblemTerm& term : CollectResiduals(input, graph)) {
       AddedTerm added;
       added.cost = term.cost;
-      for (ResidualBlock& block : term.blocks) {
+      for (ResidualBlock& block : MakeCeresBlocks(graph, term.residuals)) {
         added.ids.push_back(Add(std::move(block)));
       }
       terms_.push_back(std::move(added));
@@ -76,7 +77,6 @@ class CeresProblem {
 
   static ceres::Problem::Options ProblemOptions() {
     ceres::Problem::Options options;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     options.disable_all_safety_checks = true;
     return options;
   }
@@ -86,16 +86,10 @@ class CeresProblem {
     for (const int node : block.nodes) {
       parameters.push_back(&twists_[kTwistSize * node]);
     }
-    ceres::LossFunction* loss = block.loss.get();
-    if (block.loss != nullptr &&
-        (losses_.empty() || losses_.back() != block.loss)) {
-      losses_.push_back(block.loss);
-    }
-    return problem_.AddResidualBlock(block.cost.release(), loss, parameters);
+    return problem_.AddResidualBlock(block.cost.release(), nullptr, parameters);
   }
 
   std::vector<double> twists_;
-  std::vector<std::shared_ptr<ceres::LossFunction>> losses_;
   ceres::Problem problem_;
   std::vector<AddedTerm> terms_;
 };
@@ -144,7 +138,8 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
     report->iterations.push_back(
         {it.iteration, it.step_is_successful, it.cost, it.cost_change,
          it.gradient_max_norm, it.step_norm, it.trust_region_radius,
-         it.linear_solver_iterations, it.iteration_time_in_seconds});
+         it.linear_solver_iterations, /*linear_residual=*/0,
+         it.iteration_time_in_seconds});
   }
   if (full_report) report->full_report = summary.FullReport();
 }
@@ -152,18 +147,22 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
 }  // namespace
 
 void SolverOptions::Check() const {
-  CheckOption(solver == "ceres" || solver == "gn_pcg", "solver", solver,
-              "ceres or gn_pcg");
-  ceres::LinearSolverType solver;
   CheckOption(
-      linear_solver == "auto" ||
-          (ceres::StringToLinearSolverType(Upper(linear_solver), &solver) &&
-           linear_solver.find("schur") == std::string::npos),
-      "linear_solver", linear_solver,
-      "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
-      "or cgnr");
-  CheckOption(preconditioner == "jacobi" || preconditioner == "identity",
-              "preconditioner", preconditioner, "jacobi or identity");
+      solver == "gn_pcg" || solver == "gn_cholesky" || solver == "ceres",
+      "solver", solver, "gn_pcg, gn_cholesky or ceres");
+  ceres::LinearSolverType solver_type;
+  CheckOption(linear_solver == "auto" ||
+                  (ceres::StringToLinearSolverType(Upper(linear_solver),
+                                                   &solver_type) &&
+                   linear_solver.find("schur") == std::string::npos),
+              "linear_solver", linear_solver,
+              "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
+              "or cgnr");
+  const bool known = preconditioner == "identity" || preconditioner == "jacobi";
+  CheckOption(known || preconditioner == "block_ic0", "preconditioner",
+              preconditioner, "identity, jacobi or block_ic0");
+  CheckOption(known || solver == "gn_pcg", "preconditioner", preconditioner,
+              "identity or jacobi with solver " + solver);
   CheckOption(trust_region == "levenberg_marquardt" || trust_region == "dogleg",
               "trust_region", trust_region, "levenberg_marquardt or dogleg");
   CheckOption(trust_region != "dogleg" || linear_solver != "cgnr",

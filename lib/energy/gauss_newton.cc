@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/block_matrix.h"
 #include "splitfusion/lib/energy/block_problem.h"
+#include "splitfusion/lib/energy/linear_solver.h"
 #include "splitfusion/lib/energy/solver.h"
 
 namespace splitfusion {
@@ -14,17 +16,6 @@ namespace {
 /// Bounds of the diagonal that damping is relative to, as in Ceres.
 constexpr double kMinDiagonal = 1e-6;
 constexpr double kMaxDiagonal = 1e32;
-
-/// Adds diag(J^T J) / radius, Ceres' Levenberg-Marquardt damping.
-void Damp(double radius, SymmetricBlockMatrix* matrix) {
-  for (int i = 0; i < matrix->size(); ++i) {
-    Block6& block = matrix->Diagonal(i);
-    for (int d = 0; d < 6; ++d) {
-      block(d, d) +=
-          std::clamp(block(d, d), kMinDiagonal, kMaxDiagonal) / radius;
-    }
-  }
-}
 
 double MaxNorm(const std::vector<Vector6>& values) {
   double norm = 0;
@@ -37,17 +28,6 @@ double Norm(const std::vector<Vector6>& values) {
   double sum = 0;
   for (const Vector6& v : values) sum += v.squaredNorm();
   return std::sqrt(sum);
-}
-
-/// One attempt of a step: solves (J^T J + D / radius) x = -J^T r.
-CgResult SolveStep(SymmetricBlockMatrix matrix,
-                   const std::vector<Vector6>& gradient, double radius,
-                   const SolverOptions& options, std::vector<Vector6>* step) {
-  Damp(radius, &matrix);
-  std::vector<Vector6> right = gradient;
-  for (Vector6& v : right) v = -v;
-  return SolveByPcg(matrix, right, options.eta,
-                    options.max_linear_solver_iterations, step);
 }
 
 std::vector<double> Moved(const std::vector<double>& twists,
@@ -68,6 +48,8 @@ class GaussNewton {
       : options_(options),
         problem_(input, graph),
         matrix_(problem_.MakeMatrix()),
+        linear_solver_(MakeLinearSolver(options)),
+        diagonal_(graph.size()),
         twists_(kTwistSize * graph.size(), 0.0),
         radius_(options.initial_radius) {
     const bool finite = EvaluateJacobians();
@@ -120,7 +102,27 @@ class GaussNewton {
   /// Normal equations of the Jacobians evaluated last.
   void Linearize() {
     problem_.Assemble(&matrix_, &gradient_);
+    for (int i = 0; i < matrix_.size(); ++i) {
+      diagonal_[i] = matrix_.Diagonal(i).diagonal();
+    }
     linearized_ = true;
+  }
+
+  /// Adds diag(J^T J) / radius, Ceres' Levenberg-Marquardt damping.
+  void Damp() {
+    for (int i = 0; i < matrix_.size(); ++i) {
+      matrix_.Diagonal(i).diagonal() =
+          diagonal_[i] +
+          diagonal_[i].cwiseMax(kMinDiagonal).cwiseMin(kMaxDiagonal) / radius_;
+    }
+  }
+
+  /// Solves (J^T J + D / radius) x = -J^T r.
+  LinearSolution SolveStep() {
+    Damp();
+    std::vector<Vector6> right = gradient_;
+    for (Vector6& v : right) v = -v;
+    return linear_solver_->Solve(matrix_, right, &step_);
   }
 
   /// Iteration 0, the start, as Ceres reports it.
@@ -141,12 +143,12 @@ class GaussNewton {
     const Stopwatch watch;
     if (!linearized_) Linearize();
     iteration.gradient_max_norm = MaxNorm(gradient_);
-    const CgResult cg =
-        SolveStep(matrix_, gradient_, radius_, options_, &step_);
+    const LinearSolution solution = SolveStep();
     report_.linear_solver_seconds += watch.Seconds();
-    iteration.linear_solver_iterations = cg.iterations;
+    iteration.linear_solver_iterations = solution.iterations;
+    iteration.linear_residual = solution.relative_residual;
     iteration.step_norm = Norm(step_);
-    TryStep(&iteration);
+    TryStep(solution.usable, &iteration);
     iteration.cost = report_.final_cost;
     iteration.trust_region_radius = radius_;
     iteration.seconds = iteration_watch.Seconds();
@@ -154,9 +156,10 @@ class GaussNewton {
   }
 
   /// Takes the step if it does not raise the cost, and adapts the radius.
-  void TryStep(SolverIteration* iteration) {
+  void TryStep(bool usable, SolverIteration* iteration) {
     std::vector<double> moved = Moved(twists_, step_);
-    const bool finite = problem_.Evaluate(moved, /*with_jacobians=*/false);
+    const bool finite =
+        usable && problem_.Evaluate(moved, /*with_jacobians=*/false);
     const double cost = problem_.Cost();
     iteration->accepted = finite && cost <= report_.final_cost;
     iteration->cost_change = finite ? report_.final_cost - cost : 0;
@@ -182,6 +185,8 @@ class GaussNewton {
   const SolverOptions& options_;
   BlockProblem problem_;
   SymmetricBlockMatrix matrix_;
+  std::unique_ptr<LinearSolver> linear_solver_;
+  std::vector<Vector6> diagonal_;  // Of J^T J, without damping.
   std::vector<double> twists_;
   double radius_;
   bool linearized_ = false;  // Whether matrix_ and gradient_ are at twists_.

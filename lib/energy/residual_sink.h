@@ -1,19 +1,17 @@
 #ifndef SPLITFUSION_LIB_ENERGY_RESIDUAL_SINK_H_
 #define SPLITFUSION_LIB_ENERGY_RESIDUAL_SINK_H_
 
-#include <ceres/dynamic_autodiff_cost_function.h>
-
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 #include <memory>
-#include <numeric>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "splitfusion/lib/association/correspondence.h"
+#include "splitfusion/lib/energy/node_residuals.h"
+#include "splitfusion/lib/energy/point_residuals.h"
 #include "splitfusion/lib/energy/robust_loss.h"
-#include "splitfusion/lib/energy/warped_point_group.h"
+#include "splitfusion/lib/energy/warped_points.h"
 
 namespace splitfusion {
 
@@ -31,150 +29,72 @@ struct TermOptions {
   double scale = 0.01;  ///< Inlier width of the loss, metres.
 };
 
-/// One block of residuals over some nodes' twists.
-struct ResidualBlock {
-  /// Residuals and Jacobians over the nodes' twists.
-  std::unique_ptr<ceres::CostFunction> cost;
-  /// Nodes of the parameter blocks, in order.
-  std::vector<int> nodes;
-  /// Loss that Ceres applies to the block; null if the block has applied it.
-  std::shared_ptr<ceres::LossFunction> loss;
+/// The residuals that one term has added.
+struct TermResiduals {
+  /// Warped points and their residuals; null if there are none.
+  std::shared_ptr<const WarpedPoints> points;
+  /// As `points`.
+  std::shared_ptr<const PointResiduals> of_points;
+  /// Residuals of node tuples; null if there are none.
+  std::shared_ptr<const NodeResiduals> of_nodes;
 };
 
 /// Receives the residuals of one term. It owns the parameter layout: terms name
 /// graph nodes.
 class ResidualSink {
  public:
-  /// Residuals are scaled so that the blocks' cost sums to
-  /// weight_factor * options.weight / N * sum of rho(|r|^2 / s^2).
-  ResidualSink(const DeformationGraph& graph, const TermOptions& options,
-               double weight_factor)
-      : graph_(graph), options_(options), weight_factor_(weight_factor) {}
+  /// Residuals are scaled so that their cost sums to
+  /// weight_factor * options.weight / N * sum of rho(|r|^2 / s^2). Terms of one
+  /// problem share `cache`.
+  ResidualSink(const TermOptions& options, double weight_factor,
+               WarpedPointsCache* cache)
+      : options_(options), weight_factor_(weight_factor), cache_(cache) {}
 
   /// Adds one residual vector per model sample; `functors[i]` sees the warped
   /// point of `samples[i]`. PointFunctor: kResiduals, and a template
   /// operator()(const T* warped_point, T* residual) in metres. Call it once.
   template <typename PointFunctor>
   void AddWarpedPoints(const std::vector<const ModelSample*>& samples,
-                       const std::vector<PointFunctor>& functors);
+                       const std::vector<PointFunctor>& functors) {
+    residual_vectors_ = static_cast<int>(samples.size());
+    if (samples.empty()) return;
+    residuals_.points = cache_->Get(samples);
+    residuals_.of_points =
+        std::make_shared<PointResidualsOf<PointFunctor>>(functors, Scaling());
+  }
 
-  /// Adds one residual vector per node tuple; `functors[i]` sees the twists of
-  /// `nodes[i]` as (T const* const* twists, T* residual), in metres. Plain
-  /// dynamic autodiff. Call it once.
+  /// Adds one residual vector per tuple of different nodes; `functors[i]` sees
+  /// the twists of `nodes[i]` as (T const* const* twists, T* residual), in
+  /// metres. Plain autodiff. Call it once.
+  ///
+  /// @throw InputError if a tuple has a node twice.
   template <typename Functor>
   void AddNodes(const std::vector<std::vector<int>>& nodes,
-                const std::vector<Functor>& functors);
+                const std::vector<Functor>& functors) {
+    residual_vectors_ = static_cast<int>(nodes.size());
+    if (nodes.empty()) return;
+    CheckTuples(nodes);
+    residuals_.of_nodes =
+        std::make_shared<NodeResidualsOf<Functor>>(nodes, functors, Scaling());
+  }
 
   /// N of the normalisation.
   int residual_vectors() const { return residual_vectors_; }
-  /// The blocks so far; the caller may move them out.
-  std::vector<ResidualBlock>& blocks() { return blocks_; }
+  /// What has been added.
+  const TermResiduals& residuals() const { return residuals_; }
 
  private:
-  /// Root of the factor that turns Ceres' 1/2 sum into the term's energy.
-  double WeightRoot() const {
-    return std::sqrt(2 * weight_factor_ * options_.weight /
-                     std::max(1, residual_vectors_));
-  }
+  static void CheckTuples(const std::vector<std::vector<int>>& nodes);
 
-  const DeformationGraph& graph_;
+  /// Its weight turns Ceres' 1/2 sum into the term's energy.
+  ResidualScaling Scaling() const;
+
   const TermOptions& options_;
   double weight_factor_;
+  WarpedPointsCache* cache_;
   int residual_vectors_ = 0;
-  std::vector<ResidualBlock> blocks_;
+  TermResiduals residuals_;
 };
-
-namespace internal {
-
-/// Points a block holds at most: bounds the memory of one evaluation.
-constexpr int kMaxGroupSize = 512;
-
-/// Order of points in which those with the same node set are adjacent; node
-/// lists are ascending, so equal sets are equal lists.
-inline std::vector<int> OrderByNodes(
-    const std::vector<const ModelSample*>& samples) {
-  std::vector<int> order(samples.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto nodes_of = [&](int i) {
-    return samples[i]->skinning.nodes.data();
-  };
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return std::lexicographical_compare(
-        nodes_of(a), nodes_of(a) + samples[a]->skinning.count, nodes_of(b),
-        nodes_of(b) + samples[b]->skinning.count);
-  });
-  return order;
-}
-
-/// A functor scaled by a constant, so that residuals are in units of s.
-template <typename Functor>
-struct ScaledFunctor {
-  Functor functor;
-  double scale;
-  template <typename T>
-  bool operator()(T const* const* twists, T* residuals) const {
-    if (!functor(twists, residuals)) return false;
-    for (int d = 0; d < Functor::kResiduals; ++d) residuals[d] *= T(scale);
-    return true;
-  }
-};
-
-}  // namespace internal
-
-template <typename PointFunctor>
-void ResidualSink::AddWarpedPoints(
-    const std::vector<const ModelSample*>& samples,
-    const std::vector<PointFunctor>& functors) {
-  using Group = WarpedPointGroup<PointFunctor>;
-  residual_vectors_ = static_cast<int>(samples.size());
-  const std::shared_ptr<ceres::LossFunction> loss =
-      MakeLoss(options_.loss, options_.scale / kResidualUnit);
-  std::unique_ptr<Group> group;
-  const auto flush = [&] {
-    if (group == nullptr) return;
-    std::vector<int> nodes = group->nodes();
-    blocks_.push_back({std::move(group), std::move(nodes), nullptr});
-  };
-  for (const int i : internal::OrderByNodes(samples)) {
-    const Skinning& skinning = samples[i]->skinning;
-    const bool same =
-        group != nullptr && group->size() < internal::kMaxGroupSize &&
-        static_cast<int>(group->nodes().size()) == skinning.count &&
-        std::equal(group->nodes().begin(), group->nodes().end(),
-                   skinning.nodes.begin());
-    if (!same) {
-      flush();
-      group = std::make_unique<Group>(
-          graph_,
-          std::vector<int>(skinning.nodes.begin(),
-                           skinning.nodes.begin() + skinning.count),
-          1 / kResidualUnit, WeightRoot(), loss);
-    }
-    group->Add(graph_, skinning, samples[i]->point, functors[i]);
-  }
-  flush();
-}
-
-template <typename Functor>
-void ResidualSink::AddNodes(const std::vector<std::vector<int>>& nodes,
-                            const std::vector<Functor>& functors) {
-  residual_vectors_ = static_cast<int>(nodes.size());
-  const double weight = WeightRoot() * WeightRoot();
-  const std::shared_ptr<ceres::LossFunction> loss =
-      std::make_shared<ceres::ScaledLoss>(
-          MakeLoss(options_.loss, options_.scale / kResidualUnit).release(),
-          weight, ceres::TAKE_OWNERSHIP);
-  using Scaled = internal::ScaledFunctor<Functor>;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    auto cost = std::make_unique<ceres::DynamicAutoDiffCostFunction<Scaled, 6>>(
-        new Scaled{functors[i], 1 / kResidualUnit});
-    for (std::size_t k = 0; k < nodes[i].size(); ++k) {
-      cost->AddParameterBlock(kTwistSize);
-    }
-    cost->SetNumResiduals(Functor::kResiduals);
-    blocks_.push_back({std::move(cost), nodes[i], loss});
-  }
-}
 
 }  // namespace splitfusion
 

@@ -13,14 +13,14 @@ namespace splitfusion {
 
 /// Options of the minimiser; names and values are Ceres' own.
 struct SolverOptions {
-  /// gn_pcg (block Gauss-Newton over the same residual blocks, see
-  /// MinimizeWithGaussNewton) or ceres, the reference.
+  /// gn_pcg or gn_cholesky (block Gauss-Newton over the same residuals, see
+  /// MinimizeWithGaussNewton), or ceres, the reference.
   std::string solver = "gn_pcg";
   /// "auto" (dense_normal_cholesky for a rigid surface, else
   /// sparse_normal_cholesky), dense_qr, dense_normal_cholesky,
   /// sparse_normal_cholesky, cgnr.
   std::string linear_solver = "auto";
-  /// For cgnr: identity or jacobi.
+  /// For cgnr and gn_pcg: identity or jacobi; for gn_pcg block_ic0 as well.
   std::string preconditioner = "jacobi";
   /// levenberg_marquardt or dogleg.
   std::string trust_region = "levenberg_marquardt";
@@ -67,8 +67,9 @@ SolverReport MinimizeWithCeres(const SurfaceProblem& problem,
                                DeformationGraph* graph);
 
 /// The same by Levenberg-Marquardt on assembled 6x6 blocks of J^T J, solved by
-/// block-Jacobi preconditioned conjugate gradients (Eq. 7 as the paper solves
-/// it). Residual blocks, losses and damping are those of Ceres.
+/// preconditioned conjugate gradients (gn_pcg; Eq. 7 as the paper solves it) or
+/// by a sparse Cholesky factorisation (gn_cholesky). Residuals, losses and
+/// damping are those of Ceres. Results do not depend on the number of threads.
 SolverReport MinimizeWithGaussNewton(const SurfaceProblem& problem,
                                      const SolverOptions& options,
                                      DeformationGraph* graph);

@@ -35,6 +35,8 @@ struct SolverIteration {
   double trust_region_radius = 0;
   /// Conjugate gradient iterations; 1 for a factorisation.
   int linear_solver_iterations = 0;
+  /// |b - A x| / |b| of the step's linear system; Ceres does not tell (0).
+  double linear_residual = 0;
   /// Wall-clock time.
   double seconds = 0;
 };

@@ -40,8 +40,8 @@ inline NodeTransport MakeTransport(const DeformationGraph& graph, int node,
 /// t_i <- t_i + tau_i. `PointFunctor` is r: a template functor of the warped
 /// point, (const T* x, T* residual), with a constant kResiduals.
 ///
-/// This is the plain form, for ceres::DynamicAutoDiffCostFunction; the solver
-/// uses WarpedPointGroup, which differentiates the same in parts.
+/// This is the plain form, for ceres::DynamicAutoDiffCostFunction; the solvers
+/// use WarpedPoints and PointResiduals, which differentiate the same in parts.
 template <typename PointFunctor>
 class WarpFunctor {
  public:

@@ -7,7 +7,7 @@ namespace splitfusion {
 void WriteIterationsHeader(std::ostream& out) {
   out << "frame,surface,round,stage,stride,prior_factor,iteration,accepted,"
          "cost,cost_change,gradient_max_norm,step_norm,trust_region_radius,"
-         "linear_solver_iterations,seconds\n";
+         "linear_solver_iterations,linear_residual,seconds\n";
 }
 
 void WriteIterations(std::ostream& out, const FrameReport& report) {
@@ -21,7 +21,7 @@ void WriteIterations(std::ostream& out, const FrameReport& report) {
         row.Add(it.iteration).Add(it.accepted ? 1 : 0).Add(it.cost);
         row.Add(it.cost_change).Add(it.gradient_max_norm).Add(it.step_norm);
         row.Add(it.trust_region_radius).Add(it.linear_solver_iterations);
-        row.Add(it.seconds);
+        row.Add(it.linear_residual).Add(it.seconds);
         out << row.text() << '\n';
       }
       ++number;

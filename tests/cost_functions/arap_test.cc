@@ -5,6 +5,7 @@
 #include "support/gradient_check.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
+#include "support/term_energy.h"
 
 namespace splitfusion {
 namespace {
@@ -101,8 +102,8 @@ TEST(ArapTerm, SumsOverAllDirectedEdges) {
   DeformationGraph graph = SampleGraph();
   Shake(0.01, /*seed=*/6, &graph);
   const TermOptions options{"arap", /*weight=*/3, LossKind::kTrivial, 0.01};
-  ResidualSink sink(graph, options, 1);
-  ArapTerm().AddResiduals({graph, {}, PinholeCamera()}, &sink);
+  const AddedResiduals added =
+      ResidualsOf(ArapTerm(), {graph, {}, PinholeCamera()}, options);
   int edges = 0;
   double sum = 0;
   for (int i = 0; i < graph.size(); ++i) {
@@ -111,26 +112,18 @@ TEST(ArapTerm, SumsOverAllDirectedEdges) {
       sum += Value(Arap::Make(graph, i, j), kNoTwists).squaredNorm();
     }
   }
-  EXPECT_EQ(sink.residual_vectors(), edges);
-  double cost = 0;
-  for (const ResidualBlock& block : sink.blocks()) {
-    double squared = 0;
-    for (const double r : Residuals(*block.cost, kNoTwists)) squared += r * r;
-    double rho[3];
-    block.loss->Evaluate(squared, rho);
-    cost += rho[0] / 2;
-  }
+  EXPECT_EQ(added.residual_vectors, edges);
+  const double cost = EnergyOf(graph, added.residuals);
   EXPECT_NEAR(cost, 3.0 / edges * sum / (0.01 * 0.01), 1e-9 * cost);
   EXPECT_TRUE(ArapTerm().is_prior());
 }
 
 TEST(ArapTerm, IsAbsentOnARigidSurface) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  const TermOptions options;
-  ResidualSink sink(graph, options, 1);
-  ArapTerm().AddResiduals({graph, {}, PinholeCamera()}, &sink);
-  EXPECT_TRUE(sink.blocks().empty());
-  EXPECT_EQ(sink.residual_vectors(), 0);
+  const AddedResiduals added =
+      ResidualsOf(ArapTerm(), {graph, {}, PinholeCamera()}, TermOptions());
+  EXPECT_EQ(added.residuals.of_nodes, nullptr);
+  EXPECT_EQ(added.residual_vectors, 0);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "support/sample_depth.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
+#include "support/term_energy.h"
 
 namespace splitfusion {
 namespace {
@@ -82,16 +83,11 @@ TEST(ColorConstancyTerm, TakesTheCorrespondencesAndTheCamera) {
   c.intensity_gradient = {0.1f, 0};
   c.weight = 0.25f;
   const TermOptions options{"color", 1, LossKind::kTrivial, 0.01};
-  ResidualSink sink(graph, options, 1);
-  ColorConstancyTerm().AddResiduals({graph, {c, c}, camera}, &sink);
-  EXPECT_EQ(sink.residual_vectors(), 2);
-  double cost = 0;
-  for (const double r :
-       Residuals(*sink.blocks().at(0).cost, {std::vector<double>(6, 0)})) {
-    cost += r * r / 2;
-  }
+  const AddedResiduals added =
+      ResidualsOf(ColorConstancyTerm(), {graph, {c, c}, camera}, options);
+  EXPECT_EQ(added.residual_vectors, 2);
   // 0.2 in grey value count like 1 cm, of which half by the confidence.
-  EXPECT_NEAR(cost, 0.25, 1e-5);
+  EXPECT_NEAR(EnergyOf(graph, added.residuals), 0.25, 1e-5);
   EXPECT_FALSE(ColorConstancyTerm().is_prior());
 }
 

@@ -7,6 +7,7 @@
 #include "support/sample_correspondences.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
+#include "support/term_energy.h"
 
 namespace splitfusion {
 namespace {
@@ -131,19 +132,11 @@ TEST(PointToPlaneTerm, AddsOneResidualACorrespondenceWithItsConfidence) {
       });
   for (Correspondence& c : correspondences) c.weight = 0.25;
   const TermOptions options{"point_to_plane", 1, LossKind::kTrivial, 0.01};
-  ResidualSink sink(graph, options, 1);
-  PointToPlaneTerm().AddResiduals({graph, correspondences, PinholeCamera()},
-                                  &sink);
-  EXPECT_EQ(sink.residual_vectors(), static_cast<int>(correspondences.size()));
-  double cost = 0;
-  for (const ResidualBlock& block : sink.blocks()) {
-    EXPECT_EQ(block.nodes, std::vector<int>{0});
-    for (const double r : Residuals(*block.cost, {std::vector<double>(6, 0)})) {
-      cost += r * r / 2;
-    }
-  }
+  const AddedResiduals added = ResidualsOf(
+      PointToPlaneTerm(), {graph, correspondences, PinholeCamera()}, options);
+  EXPECT_EQ(added.residual_vectors, static_cast<int>(correspondences.size()));
   // 2 cm off, in cm: 4, of which the confidence leaves a quarter.
-  EXPECT_NEAR(cost, 1, 1e-4);
+  EXPECT_NEAR(EnergyOf(graph, added.residuals), 1, 1e-4);
   EXPECT_FALSE(PointToPlaneTerm().is_prior());
 }
 

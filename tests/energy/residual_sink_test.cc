@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "support/gradient_check.h"
+#include "splitfusion/lib/energy/ceres_blocks.h"
+#include "support/expect_input_error.h"
+#include "support/term_energy.h"
 
 namespace splitfusion {
 namespace {
@@ -30,21 +32,6 @@ struct Constant {
   }
 };
 
-/// Energy of the sink's blocks at zero twist, as Ceres adds it up.
-double EnergyOf(ResidualSink* sink) {
-  double energy = 0;
-  for (const ResidualBlock& block : sink->blocks()) {
-    const std::vector<std::vector<double>> twists(block.nodes.size(),
-                                                  std::vector<double>(6, 0));
-    double squared = 0;
-    for (const double r : Residuals(*block.cost, twists)) squared += r * r;
-    double rho[3] = {squared, 1, 0};
-    if (block.loss != nullptr) block.loss->Evaluate(squared, rho);
-    energy += rho[0] / 2;
-  }
-  return energy;
-}
-
 ModelSample SampleAt(float z) {
   ModelSample sample;
   sample.point = {0, 0, z};
@@ -65,10 +52,11 @@ double PointEnergy(const TermOptions& options, double factor,
   }
   std::vector<const ModelSample*> pointers;
   for (const ModelSample& sample : samples) pointers.push_back(&sample);
-  ResidualSink sink(graph, options, factor);
+  WarpedPointsCache cache;
+  ResidualSink sink(options, factor, &cache);
   sink.AddWarpedPoints(pointers, functors);
   EXPECT_EQ(sink.residual_vectors(), static_cast<int>(errors.size()));
-  return EnergyOf(&sink);
+  return EnergyOf(graph, sink.residuals());
 }
 
 TEST(ResidualSink, EnergyIsWeightTimesTheMeanInSquaredCentimetres) {
@@ -103,11 +91,12 @@ TEST(ResidualSink, AnnealingMultipliesTheWeight) {
 TEST(ResidualSink, NodeResidualsAreNormalisedAlike) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   const TermOptions options{"", 6, LossKind::kHuber, 0.05};
-  ResidualSink sink(graph, options, 0.5);
+  WarpedPointsCache cache;
+  ResidualSink sink(options, 0.5, &cache);
   // |(3, 4)| = 5 cm is an inlier still: 25; 10 cm: 2 * 5 * 10 - 25 = 75.
   sink.AddNodes({{0}, {0}}, std::vector<Constant>{{0.03, 0.04}, {0.06, 0.08}});
   EXPECT_EQ(sink.residual_vectors(), 2);
-  EXPECT_NEAR(EnergyOf(&sink), 0.5 * 6 / 2 * (25 + 75), 1e-9);
+  EXPECT_NEAR(EnergyOf(graph, sink.residuals()), 0.5 * 6 / 2 * (25 + 75), 1e-9);
 }
 
 TEST(ResidualSink, PointsOfTheSameNodesShareABlock) {
@@ -123,25 +112,43 @@ TEST(ResidualSink, PointsOfTheSameNodesShareABlock) {
   }
   std::vector<const ModelSample*> pointers;
   for (const ModelSample& sample : samples) pointers.push_back(&sample);
+  WarpedPointsCache cache;
   const TermOptions options;
-  ResidualSink sink(graph, options, 1);
+  ResidualSink sink(options, 1, &cache);
   sink.AddWarpedPoints(pointers, std::vector<DepthError>(1200, {0.9}));
   // Two sets of 600 points, at most 512 in a block.
-  ASSERT_EQ(sink.blocks().size(), 4u);
-  for (const ResidualBlock& block : sink.blocks()) {
-    EXPECT_EQ(block.nodes[1], 2);
-  }
-  EXPECT_NEAR(EnergyOf(&sink), 100, 1e-6);
+  const auto blocks = MakeCeresBlocks(graph, sink.residuals());
+  ASSERT_EQ(blocks.size(), 4u);
+  for (const ResidualBlock& block : blocks) EXPECT_EQ(block.nodes[1], 2);
+  EXPECT_NEAR(EnergyOf(graph, sink.residuals()), 100, 1e-6);
+  // Another term over the same samples takes the points as they are.
+  ResidualSink other(options, 1, &cache);
+  other.AddWarpedPoints(pointers, std::vector<DepthError>(1200, {0.8}));
+  EXPECT_EQ(other.residuals().points, sink.residuals().points);
+  pointers.pop_back();
+  EXPECT_NE(cache.Get(pointers), sink.residuals().points);
 }
 
 TEST(ResidualSink, NothingAddedIsNothing) {
-  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   const TermOptions options;
-  ResidualSink sink(graph, options, 1);
+  WarpedPointsCache cache;
+  ResidualSink sink(options, 1, &cache);
   sink.AddWarpedPoints({}, std::vector<DepthError>());
   sink.AddNodes({}, std::vector<Constant>());
-  EXPECT_TRUE(sink.blocks().empty());
+  EXPECT_EQ(sink.residuals().points, nullptr);
+  EXPECT_EQ(sink.residuals().of_nodes, nullptr);
   EXPECT_EQ(sink.residual_vectors(), 0);
+}
+
+TEST(ResidualSink, ATupleMustNotRepeatANode) {
+  const TermOptions options;
+  WarpedPointsCache cache;
+  ResidualSink sink(options, 1, &cache);
+  ExpectInputError(
+      [&] {
+        sink.AddNodes({{0, 1}, {2, 2}}, std::vector<Constant>(2));
+      },
+      "nodes of a residual = 2 2: expected different nodes");
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST(RobustLoss, AllAgreeWithTheSquareForSmallResiduals) {
 }
 
 TEST(RobustLoss, AllAreConcaveInTheSquaredResidual) {
-  // WarpedPointGroup relies on rho'' <= 0.
+  // ResidualScaling relies on rho'' <= 0.
   for (const char* name : {"trivial", "huber", "tukey", "cauchy"}) {
     const auto loss = MakeLoss(ParseLoss(name), 1.5);
     for (double s = 0; s < 10; s += 0.05) {

@@ -33,12 +33,28 @@ TEST(SolverOptions, UnknownNamesListTheKnownOnes) {
                   std::string("linear_solver = ") + name + ": " + solvers);
   }
   ExpectRefused([](SolverOptions* o) { o->solver = "lm"; },
-                "solver = lm: expected ceres or gn_pcg");
+                "solver = lm: expected gn_pcg, gn_cholesky or ceres");
   ExpectRefused([](SolverOptions* o) { o->preconditioner = "schur_jacobi"; },
-                "preconditioner = schur_jacobi: expected jacobi or identity");
+                "preconditioner = schur_jacobi: expected identity, jacobi or "
+                "block_ic0");
   ExpectRefused([](SolverOptions* o) { o->trust_region = "newton"; },
                 "trust_region = newton: expected levenberg_marquardt or "
                 "dogleg");
+}
+
+TEST(SolverOptions, IncompleteFactorsAreOfGnPcgAlone) {
+  SolverOptions options;
+  options.preconditioner = "block_ic0";
+  EXPECT_NO_THROW(options.Check());
+  for (const std::string solver : {"ceres", "gn_cholesky"}) {
+    ExpectRefused(
+        [&](SolverOptions* o) {
+          o->solver = solver;
+          o->preconditioner = "block_ic0";
+        },
+        "preconditioner = block_ic0: expected identity or jacobi with solver " +
+            solver);
+  }
 }
 
 TEST(SolverOptions, DoglegNeedsAFactorisation) {

@@ -115,6 +115,64 @@ struct Choice {
   const char* preconditioner;
   const char* trust_region;
 };
+/// A term of one's own over points: where every fifth should be, metres.
+struct Anchor {
+  static constexpr int kResiduals = 3;
+  Eigen::Vector3d place;
+  template <typename T>
+  bool operator()(const T* x, T* residual) const {
+    for (int d = 0; d < 3; ++d) residual[d] = x[d] - T(place[d]);
+    return true;
+  }
+};
+
+/// And one over node triples: the middle stays between the others.
+struct Straight {
+  static constexpr int kResiduals = 3;
+  Eigen::Vector3d bend;  ///< Of the centres, metres.
+  template <typename T>
+  bool operator()(T const* const* twists, T* residual) const {
+    for (int d = 0; d < 3; ++d) {
+      residual[d] = T(bend[d]) + twists[0][3 + d] -
+                    T(0.5) * (twists[1][3 + d] + twists[2][3 + d]);
+    }
+    return true;
+  }
+};
+
+class CustomTerm : public EnergyTerm {
+ public:
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    std::vector<const ModelSample*> samples;
+    std::vector<Anchor> anchors;
+    for (std::size_t i = 0; i < input.correspondences.size(); i += 5) {
+      samples.push_back(&input.correspondences[i].model);
+      anchors.push_back({input.correspondences[i].target.cast<double>()});
+    }
+    sink->AddWarpedPoints(samples, anchors);
+    std::vector<std::vector<int>> nodes;
+    std::vector<Straight> bends;
+    const auto center = [&](int i) -> Eigen::Vector3d {
+      return input.graph.positions[i] + input.graph.motions[i].translation;
+    };
+    for (int i = 2; i < input.graph.size(); ++i) {
+      nodes.push_back({i - 1, i, i - 2});
+      bends.push_back({center(i - 1) - 0.5 * (center(i) + center(i - 2))});
+    }
+    sink->AddNodes(nodes, bends);
+  }
+};
+
+Energy EnergyWithCustomTerm() {
+  TermRegistry terms = BuiltinTerms();
+  terms.Register("custom", [] { return std::make_unique<CustomTerm>(); });
+  return ParseEnergy(
+      "point_to_plane(loss=huber) arap(weight=3) "
+      "custom(weight=0.01,loss=cauchy,scale=0.05)",
+      terms);
+}
+
 class EverySolver : public ::testing::TestWithParam<Choice> {};
 
 TEST_P(EverySolver, FindsTheSameMinimum) {
@@ -122,8 +180,7 @@ TEST_P(EverySolver, FindsTheSameMinimum) {
   const DeformationGraph start = CoverWithNodes(mesh, 0.04);
   const auto correspondences = PerfectAssociation(
       mesh, start, [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
-  const Energy energy =
-      ParsedEnergy("point_to_plane(loss=huber) arap(weight=3)");
+  const Energy energy = EnergyWithCustomTerm();
   const SurfaceProblem problem{energy, correspondences, PinholeCamera()};
   DeformationGraph reference = start;
   const double cost =
@@ -141,6 +198,8 @@ TEST_P(EverySolver, FindsTheSameMinimum) {
   EXPECT_TRUE(report.usable);
   EXPECT_EQ(report.termination, "CONVERGENCE");
   EXPECT_NEAR(report.final_cost, cost, 1e-6 * cost);
+  const bool direct = options.solver != std::string("gn_pcg");
+  EXPECT_LE(report.iterations.back().linear_residual, direct ? 1e-9 : 1e-6);
   for (int i = 0; i < graph.size(); ++i) {
     EXPECT_LT((graph.motions[i].translation - reference.motions[i].translation)
                   .norm(),
@@ -153,6 +212,9 @@ INSTANTIATE_TEST_SUITE_P(
     Names, EverySolver,
     ::testing::Values(
         Choice{"gn_pcg", "auto", "jacobi", kLm},
+        Choice{"gn_pcg", "auto", "identity", kLm},
+        Choice{"gn_pcg", "auto", "block_ic0", kLm},
+        Choice{"gn_cholesky", "auto", "jacobi", kLm},
         Choice{"ceres", "auto", "jacobi", kLm},
         Choice{"ceres", "dense_qr", "jacobi", kLm},
         Choice{"ceres", "dense_normal_cholesky", "jacobi", kLm},
@@ -267,8 +329,27 @@ TEST_P(BentPlateProblem, NodesWithoutAnyPointStayWhereThePriorHoldsThem) {
   }
 }
 
+TEST_P(BentPlateProblem, ThreadsDoNotChangeAByteOfALargerProblem) {
+  const TriangleMesh mesh = CornerMesh(0.005);
+  DeformationGraph graph = CoverWithNodes(mesh, 0.02);
+  const auto correspondences = PerfectAssociation(
+      mesh, graph, [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  const Energy energy = EnergyWithCustomTerm();
+  SolverOptions options;
+  options.solver = GetParam();
+  DeformationGraph results[2] = {graph, graph};
+  for (const int threads : {1, 2}) {
+    const tbb::global_control control(
+        tbb::global_control::max_allowed_parallelism, threads);
+    Minimize({energy, correspondences, PinholeCamera()}, options,
+             &results[threads - 1]);
+  }
+  EXPECT_TRUE(SameBytes(results[0], results[1]));
+  EXPECT_FALSE(SameBytes(results[0], graph));
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, BentPlateProblem,
-                         ::testing::Values("ceres", "gn_pcg"));
+                         ::testing::Values("ceres", "gn_pcg", "gn_cholesky"));
 
 TEST(Solver, FullReportComesOnRequest) {
   const TriangleMesh mesh = CornerMesh(0.05);
@@ -287,7 +368,7 @@ TEST(Solver, AnEmptyProblemChangesNothing) {
   const Energy energy = ParsedEnergy("point_to_plane arap");
   const DeformationGraph before =
       MakeRigidGraph(MakeMotion({0.1, 0, 0}, {0, 0, 1}));
-  for (const char* solver : {"ceres", "gn_pcg"}) {
+  for (const char* solver : {"ceres", "gn_pcg", "gn_cholesky"}) {
     SolverOptions options;
     options.solver = solver;
     DeformationGraph graph = before;

@@ -23,6 +23,7 @@ SolverReport SampleSolver() {
   step.step_norm = 0.02;
   step.trust_region_radius = 1e4;
   step.linear_solver_iterations = 7;
+  step.linear_residual = 0.005;
   step.seconds = 0.004;
   solver.iterations = {start, step};
   return solver;

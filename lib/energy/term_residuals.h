@@ -1,5 +1,5 @@
-#ifndef SPLITFUSION_LIB_ENERGY_TERM_BLOCKS_H_
-#define SPLITFUSION_LIB_ENERGY_TERM_BLOCKS_H_
+#ifndef SPLITFUSION_LIB_ENERGY_TERM_RESIDUALS_H_
+#define SPLITFUSION_LIB_ENERGY_TERM_RESIDUALS_H_
 
 #include <vector>
 
@@ -7,17 +7,17 @@
 
 namespace splitfusion {
 
-/// The residual blocks of one term of a problem.
-struct TermBlocks {
+/// One term of a problem.
+struct ProblemTerm {
   TermCost cost;  ///< Name and number of residual vectors; no costs yet.
   /// Its residuals.
-  std::vector<ResidualBlock> blocks;
+  TermResiduals residuals;
 };
 
 /// Asks every term of the energy for its residuals at the graph's motions; what
 /// all solvers start from.
-std::vector<TermBlocks> CollectBlocks(const SurfaceProblem& problem,
-                                      const DeformationGraph& graph);
+std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
+                                          const DeformationGraph& graph);
 
 /// Composes the twists (6 per node, [omega, tau]) onto the motions:
 /// R_i <- exp(omega_i) R_i, t_i <- t_i + tau_i.
@@ -25,4 +25,4 @@ void ComposeTwists(const std::vector<double>& twists, DeformationGraph* graph);
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_ENERGY_TERM_BLOCKS_H_
+#endif  // SPLITFUSION_LIB_ENERGY_TERM_RESIDUALS_H_

@@ -1,7 +1,7 @@
-// WarpedPointGroup, which the solver uses, against plain autodiff with Ceres'
-// own losses.
+// The blocks that the solvers use against plain autodiff with Ceres' own
+// losses.
 
-#include "splitfusion/lib/energy/warped_point_group.h"
+#include "splitfusion/lib/energy/ceres_blocks.h"
 
 #include <ceres/crs_matrix.h>
 #include <ceres/problem.h>
@@ -11,11 +11,12 @@
 #include <cmath>
 
 #include "splitfusion/cost_functions/point_to_plane.h"
-#include "splitfusion/lib/energy/residual_sink.h"
+#include "splitfusion/lib/energy/block_problem.h"
 #include "support/gradient_check.h"
 #include "support/sample_correspondences.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
+#include "support/term_energy.h"
 
 namespace splitfusion {
 namespace {
@@ -37,6 +38,23 @@ PointToPlane MakeFunctor(const Correspondence& c, const PointToPlane*) {
 PointToPoint MakeFunctor(const Correspondence& c, const PointToPoint*) {
   return {c.target.cast<double>()};
 }
+
+/// A functor for each correspondence.
+template <typename PointFunctor>
+class PointTerm : public EnergyTerm {
+ public:
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    std::vector<const ModelSample*> samples;
+    std::vector<PointFunctor> functors;
+    for (const Correspondence& c : input.correspondences) {
+      samples.push_back(&c.model);
+      functors.push_back(
+          MakeFunctor(c, static_cast<const PointFunctor*>(nullptr)));
+    }
+    sink->AddWarpedPoints(samples, functors);
+  }
+};
 
 /// A point functor in units of kResidualUnit.
 template <typename PointFunctor>
@@ -119,30 +137,61 @@ class Scene {
     return Evaluate(&problem);
   }
 
-  /// What the sink makes of the same.
+  /// The same by the blocks that Ceres is given.
   template <typename PointFunctor>
   Evaluation Grouped(const TermOptions& options) {
-    std::vector<const ModelSample*> samples;
-    std::vector<PointFunctor> functors;
-    for (const Correspondence& c : correspondences_) {
-      samples.push_back(&c.model);
-      functors.push_back(
-          MakeFunctor(c, static_cast<const PointFunctor*>(nullptr)));
-    }
-    ResidualSink sink(graph_, options, 1);
-    sink.AddWarpedPoints(samples, functors);
-    EXPECT_LT(sink.blocks().size(), samples.size());
     ceres::Problem problem;
     AddTwists(&problem);
-    for (ResidualBlock& block : sink.blocks()) {
-      EXPECT_EQ(block.loss, nullptr);
+    std::size_t blocks = 0;
+    const AddedResiduals added =
+        ResidualsOf(PointTerm<PointFunctor>(), Input(), options);
+    for (ResidualBlock& block : MakeCeresBlocks(graph_, added.residuals)) {
       problem.AddResidualBlock(block.cost.release(), nullptr,
                                Blocks(block.nodes));
+      ++blocks;
     }
+    EXPECT_LT(blocks, correspondences_.size());
     return Evaluate(&problem);
   }
 
+  /// The same by assembled normal equations.
+  template <typename PointFunctor>
+  Evaluation Assembled(const TermOptions& options) {
+    const Energy energy = {
+        {options, std::make_shared<PointTerm<PointFunctor>>()}};
+    BlockProblem problem({energy, correspondences_, PinholeCamera()}, graph_);
+    std::vector<double> flat;
+    for (const auto& twist : twists_) {
+      flat.insert(flat.end(), twist.begin(), twist.end());
+    }
+    EXPECT_TRUE(problem.Evaluate(flat, /*with_jacobians=*/true));
+    SymmetricBlockMatrix matrix = problem.MakeMatrix();
+    std::vector<Vector6> gradient;
+    problem.Assemble(&matrix, &gradient);
+    Evaluation evaluation;
+    evaluation.cost = problem.Cost();
+    evaluation.gradient =
+        Eigen::Map<Eigen::VectorXd>(gradient[0].data(), flat.size());
+    evaluation.gauss_newton = Dense(matrix);
+    return evaluation;
+  }
+
  private:
+  EnergyInput Input() const {
+    return {graph_, correspondences_, PinholeCamera()};
+  }
+  static Eigen::MatrixXd Dense(const SymmetricBlockMatrix& matrix) {
+    const int size = 6 * matrix.size();
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+    for (int i = 0; i < matrix.size(); ++i) {
+      for (int e = matrix.row_begin()[i]; e < matrix.row_begin()[i + 1]; ++e) {
+        const int j = matrix.columns()[e];
+        dense.block<6, 6>(6 * i, 6 * j) = matrix.blocks()[e];
+        dense.block<6, 6>(6 * j, 6 * i) = matrix.blocks()[e].transpose();
+      }
+    }
+    return dense;
+  }
   void AddTwists(ceres::Problem* problem) {
     for (auto& twist : twists_) problem->AddParameterBlock(twist.data(), 6);
   }
@@ -166,58 +215,70 @@ void ExpectEqual(const Evaluation& a, const Evaluation& b) {
             1e-10 * a.gauss_newton.norm());
 }
 
-class WarpedPointGroupTest : public ::testing::TestWithParam<LossKind> {};
+class CeresBlocksTest : public ::testing::TestWithParam<LossKind> {};
 
-TEST_P(WarpedPointGroupTest, PointToPlaneEqualsPlainAutoDiff) {
+TEST_P(CeresBlocksTest, PointToPlaneEqualsPlainAutoDiff) {
   Scene scene;
   const TermOptions options{"", 2.5, GetParam(), 0.012};
-  ExpectEqual(scene.Plain<PointToPlane>(options),
-              scene.Grouped<PointToPlane>(options));
+  const Evaluation plain = scene.Plain<PointToPlane>(options);
+  ExpectEqual(plain, scene.Grouped<PointToPlane>(options));
+  ExpectEqual(plain, scene.Assembled<PointToPlane>(options));
 }
 
-TEST_P(WarpedPointGroupTest, VectorResidualsEqualPlainAutoDiff) {
+TEST_P(CeresBlocksTest, VectorResidualsEqualPlainAutoDiff) {
   Scene scene;
   const TermOptions options{"", 2.5, GetParam(), 0.03};
-  ExpectEqual(scene.Plain<PointToPoint>(options),
-              scene.Grouped<PointToPoint>(options));
+  const Evaluation plain = scene.Plain<PointToPoint>(options);
+  ExpectEqual(plain, scene.Grouped<PointToPoint>(options));
+  ExpectEqual(plain, scene.Assembled<PointToPoint>(options));
 }
 
-INSTANTIATE_TEST_SUITE_P(Losses, WarpedPointGroupTest,
+INSTANTIATE_TEST_SUITE_P(Losses, CeresBlocksTest,
                          ::testing::Values(LossKind::kTrivial, LossKind::kHuber,
                                            LossKind::kTukey, LossKind::kCauchy),
                          [](const auto& info) { return ToString(info.param); });
 
-TEST(WarpedPointGroup, GradientsMatchNumericWithoutLoss) {
-  DeformationGraph graph = CoverWithNodes(PlateMesh(0.2, 0.2, 0.01, 1), 0.04);
-  Shake(0.1, /*seed=*/1, &graph);
-  const Eigen::Vector3f point(0.11f, 0.07f, 1);
-  const Skinning skinning = SkinningIndex(graph, 6).Skin(point);
-  WarpedPointGroup<PointToPoint> group(
-      graph,
-      std::vector<int>(skinning.nodes.begin(),
-                       skinning.nodes.begin() + skinning.count),
-      100, 0.5, std::make_shared<ceres::TrivialLoss>());
-  group.Add(graph, skinning, point, {{0.1, 0.1, 1.1}});
-  group.Add(graph, skinning, point, {{0.2, 0.1, 0.9}});
-  EXPECT_EQ(group.num_residuals(), 7);
-  EXPECT_GRADIENTS_MATCH(group, RandomTwists(skinning.count, 0.3, /*seed=*/2));
+/// A block of two points over their nodes.
+std::vector<ResidualBlock> TwoPoints(const DeformationGraph& graph,
+                                     const ModelSample& sample,
+                                     const TermOptions& options) {
+  WarpedPointsCache cache;
+  ResidualSink sink(options, 1, &cache);
+  sink.AddWarpedPoints(
+      {&sample, &sample},
+      std::vector<PointToPoint>{{{0.1, 0.1, 1.1}}, {{0.2, 0.1, 0.9}}});
+  return MakeCeresBlocks(graph, sink.residuals());
 }
 
-TEST(WarpedPointGroup, JacobiansOfConstantNodesMayBeLeftOut) {
+TEST(CeresBlocks, GradientsMatchNumericWithoutLoss) {
+  DeformationGraph graph = CoverWithNodes(PlateMesh(0.2, 0.2, 0.01, 1), 0.04);
+  Shake(0.1, /*seed=*/1, &graph);
+  ModelSample sample;
+  sample.point = {0.11f, 0.07f, 1};
+  sample.skinning = SkinningIndex(graph, 6).Skin(sample.point);
+  const auto blocks = TwoPoints(graph, sample, TermOptions());
+  ASSERT_EQ(blocks.size(), 1u);
+  EXPECT_EQ(blocks[0].cost->num_residuals(), 6);
+  EXPECT_GRADIENTS_MATCH(*blocks[0].cost,
+                         RandomTwists(sample.skinning.count, 0.3, /*seed=*/2));
+}
+
+TEST(CeresBlocks, JacobiansOfConstantNodesMayBeLeftOut) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  Skinning skinning;
-  skinning.count = 1;
-  skinning.weights[0] = 1;
-  WarpedPointGroup<PointToPoint> group(graph, {0}, 1, 1,
-                                       std::make_shared<ceres::TrivialLoss>());
-  group.Add(graph, skinning, {0, 0, 1}, {{0, 0, 3}});
+  ModelSample sample;
+  sample.point = {0, 0, 1};
+  sample.skinning.count = 1;
+  sample.skinning.weights[0] = 1;
+  const auto blocks = TwoPoints(graph, sample, {"", 1, LossKind::kHuber, 0.5});
   const std::vector<double> twist(6, 0);
   const double* twists[1] = {twist.data()};
-  double residuals[4];
+  double residuals[7];
   double* none[1] = {nullptr};
-  ASSERT_TRUE(group.Evaluate(twists, residuals, none));
-  EXPECT_NEAR(residuals[2], -2, 1e-12);
-  EXPECT_EQ(residuals[3], 0);
+  ASSERT_EQ(blocks[0].cost->num_residuals(), 7);
+  ASSERT_TRUE(blocks[0].cost->Evaluate(twists, residuals, none));
+  // Centimetres; a weight of 1 over two points and Ceres' 1/2 cancel.
+  EXPECT_NEAR(residuals[2], -10, 1e-9);
+  EXPECT_NEAR(residuals[6], 0, 1e-6);
 }
 
 }  // namespace

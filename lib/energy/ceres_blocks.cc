@@ -1,0 +1,166 @@
+#include "splitfusion/lib/energy/ceres_blocks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace splitfusion {
+namespace {
+
+/// Copies a row over all nodes' twists into Ceres' blocks, which may be null.
+void SplitRow(const double* values, int nodes, int row, double** jacobians) {
+  for (int k = 0; k < nodes; ++k, values += kTwistSize) {
+    if (jacobians[k] == nullptr) continue;
+    std::copy_n(values, kTwistSize, jacobians[k] + kTwistSize * row);
+  }
+}
+
+/// Rows of a block with so many residuals of its own.
+int WithRest(int rows, const ResidualScaling& scaling) {
+  return scaling.loss == nullptr ? rows : rows + 1;
+}
+
+/// A block of residuals over so many nodes.
+class BlockCost : public ceres::CostFunction {
+ protected:
+  /// `rows` residuals of its own.
+  BlockCost(int rows, int nodes, const ResidualScaling& scaling) : rows_(rows) {
+    mutable_parameter_block_sizes()->assign(nodes, kTwistSize);
+    set_num_residuals(WithRest(rows, scaling));
+  }
+
+  /// Sets the residual that makes the squared norm twice the cost, if there is
+  /// a loss, and its derivative.
+  void SetRest(double cost, double* residuals, double** jacobians) const {
+    if (num_residuals() == rows_) return;
+    double squared = 0;
+    for (int i = 0; i < rows_; ++i) squared += residuals[i] * residuals[i];
+    residuals[rows_] = std::sqrt(std::max(2 * cost - squared, 0.0));
+    if (jacobians == nullptr) return;
+    const std::array<double, kTwistSize> zero{};
+    for (std::size_t k = 0; k < parameter_block_sizes().size(); ++k) {
+      SplitRow(zero.data(), 1, rows_, jacobians + k);
+    }
+  }
+
+ private:
+  int rows_;
+};
+
+/// Residuals of one group of points.
+class PointGroupCost : public BlockCost {
+ public:
+  PointGroupCost(const DeformationGraph& graph, const TermResiduals& residuals,
+                 const WarpedPoints::Group& group)
+      : BlockCost(residuals.of_points->dims() * (group.end - group.begin),
+                  group.node_count, residuals.of_points->scaling()),
+        graph_(graph),
+        points_(residuals.points),
+        residuals_(residuals.of_points),
+        group_(group) {}
+
+  bool Evaluate(double const* const* twists, double* residuals,
+                double** jacobians) const override {
+    std::array<TwistedNode, kMaxSkinningNodes> twisted;
+    std::array<const TwistedNode*, kMaxSkinningNodes> nodes;
+    for (int k = 0; k < group_.node_count; ++k) {
+      twisted[k] = TwistNode(graph_, group_.nodes[k], twists[k]);
+      nodes[k] = &twisted[k];
+    }
+    const int dims = residuals_->dims();
+    const bool differentiate = jacobians != nullptr;
+    double cost = 0;
+    std::array<double, 3 * kChunk> warped;
+    std::array<double, 3 * kChunk * kMaxSkinningNodes> carried;
+    std::vector<double> by_point(differentiate ? 3 * kChunk * dims : 0);
+    for (int begin = group_.begin; begin < group_.end; begin += kChunk) {
+      const int end = std::min(begin + kChunk, group_.end);
+      const int first = dims * (begin - group_.begin);
+      points_->Warp(group_, begin, end, nodes.data(), warped.data(),
+                    carried.data());
+      if (!residuals_->Evaluate(&points_->source()[begin], end - begin,
+                                warped.data(), residuals + first,
+                                differentiate ? by_point.data() : nullptr,
+                                &cost)) {
+        return false;
+      }
+      if (!differentiate) continue;
+      for (int row = 0; row < dims * (end - begin); ++row) {
+        const int point = row / dims;
+        std::array<double, kTwistSize * kMaxSkinningNodes> values;
+        points_->DifferentiateByTwists(group_, begin + point, nodes.data(),
+                                       &carried[3 * group_.node_count * point],
+                                       &by_point[3 * row], values.data());
+        SplitRow(values.data(), group_.node_count, first + row, jacobians);
+      }
+    }
+    SetRest(cost, residuals, jacobians);
+    return true;
+  }
+
+ private:
+  /// Points evaluated at a time.
+  static constexpr int kChunk = 32;
+
+  const DeformationGraph& graph_;
+  std::shared_ptr<const WarpedPoints> points_;
+  std::shared_ptr<const PointResiduals> residuals_;
+  WarpedPoints::Group group_;
+};
+
+/// Residuals of one node tuple.
+class NodeTupleCost : public BlockCost {
+ public:
+  NodeTupleCost(std::shared_ptr<const NodeResiduals> residuals, int tuple)
+      : BlockCost(residuals->dims(),
+                  static_cast<int>(residuals->nodes(tuple).size()),
+                  residuals->scaling()),
+        residuals_(std::move(residuals)),
+        tuple_(tuple) {}
+
+  bool Evaluate(double const* const* twists, double* residuals,
+                double** jacobians) const override {
+    const int nodes = static_cast<int>(residuals_->nodes(tuple_).size());
+    const int dims = residuals_->dims();
+    std::vector<double> joint(jacobians == nullptr ? 0
+                                                   : dims * nodes * kTwistSize);
+    double cost = 0;
+    if (!residuals_->Evaluate(tuple_, twists, residuals,
+                              jacobians == nullptr ? nullptr : joint.data(),
+                              &cost)) {
+      return false;
+    }
+    SetRest(cost, residuals, jacobians);
+    for (int row = 0; jacobians != nullptr && row < dims; ++row) {
+      SplitRow(&joint[row * nodes * kTwistSize], nodes, row, jacobians);
+    }
+    return true;
+  }
+
+ private:
+  std::shared_ptr<const NodeResiduals> residuals_;
+  int tuple_;
+};
+
+}  // namespace
+
+std::vector<ResidualBlock> MakeCeresBlocks(const DeformationGraph& graph,
+                                           const TermResiduals& residuals) {
+  std::vector<ResidualBlock> blocks;
+  if (residuals.points != nullptr) {
+    for (const WarpedPoints::Group& group : residuals.points->groups()) {
+      blocks.push_back(
+          {std::make_unique<PointGroupCost>(graph, residuals, group),
+           std::vector<int>(group.nodes, group.nodes + group.node_count)});
+    }
+  }
+  const auto& tuples = residuals.of_nodes;
+  for (int i = 0; tuples != nullptr && i < tuples->size(); ++i) {
+    blocks.push_back(
+        {std::make_unique<NodeTupleCost>(tuples, i), tuples->nodes(i)});
+  }
+  return blocks;
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,32 @@
+#ifndef SPLITFUSION_LIB_ENERGY_PRECONDITIONER_H_
+#define SPLITFUSION_LIB_ENERGY_PRECONDITIONER_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/energy/block_matrix.h"
+
+namespace splitfusion {
+
+/// An approximate inverse of a matrix: symmetric, positive definite.
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+
+  /// out = M^-1 in; returns in . out. `out` has the size of `in`.
+  virtual double Apply(const std::vector<Vector6>& in,
+                       std::vector<Vector6>* out) const = 0;
+};
+
+/// Preconditioner of a matrix: identity, jacobi (inverses of the diagonal
+/// blocks) or block_ic0 (incomplete Cholesky factor with the blocks of the
+/// matrix itself).
+///
+/// @throw InputError on an unknown name; lists the known ones.
+std::unique_ptr<Preconditioner> MakePreconditioner(
+    const std::string& name, const SymmetricBlockMatrix& matrix);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_PRECONDITIONER_H_

@@ -1,0 +1,32 @@
+#include "splitfusion/lib/energy/residual_sink.h"
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+
+void ResidualSink::CheckTuples(const std::vector<std::vector<int>>& nodes) {
+  for (const std::vector<int>& tuple : nodes) {
+    for (std::size_t i = 1; i < tuple.size(); ++i) {
+      const auto end = tuple.begin() + i;
+      if (std::find(tuple.begin(), end, tuple[i]) == end) continue;
+      std::string text;
+      for (const int node : tuple) {
+        text += (text.empty() ? "" : " ") + std::to_string(node);
+      }
+      throw OptionError("nodes of a residual", text, "different nodes");
+    }
+  }
+}
+
+ResidualScaling ResidualSink::Scaling() const {
+  ResidualScaling scaling;
+  scaling.residual_scale = 1 / kResidualUnit;
+  scaling.weight_root =
+      std::sqrt(2 * weight_factor_ * options_.weight / residual_vectors_);
+  if (options_.loss != LossKind::kTrivial) {
+    scaling.loss = MakeLoss(options_.loss, options_.scale / kResidualUnit);
+  }
+  return scaling;
+}
+
+}  // namespace splitfusion

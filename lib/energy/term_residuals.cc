@@ -1,0 +1,36 @@
+#include "splitfusion/lib/energy/term_residuals.h"
+
+#include <utility>
+
+namespace splitfusion {
+
+std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
+                                          const DeformationGraph& graph) {
+  const EnergyInput input{graph, problem.correspondences, problem.camera,
+                          problem.live, problem.before};
+  std::vector<ProblemTerm> terms;
+  WarpedPointsCache cache;
+  for (const WeightedTerm& weighted : problem.energy) {
+    const double factor = weighted.term->is_prior() ? problem.prior_factor : 1;
+    ResidualSink sink(weighted.options, factor, &cache);
+    weighted.term->AddResiduals(input, &sink);
+    ProblemTerm term;
+    term.cost.term = weighted.options.name;
+    term.cost.residual_vectors = sink.residual_vectors();
+    term.residuals = sink.residuals();
+    terms.push_back(std::move(term));
+  }
+  return terms;
+}
+
+void ComposeTwists(const std::vector<double>& twists, DeformationGraph* graph) {
+  for (int i = 0; i < graph->size(); ++i) {
+    const Eigen::Map<const Eigen::Vector3d> omega(&twists[kTwistSize * i]);
+    const Eigen::Map<const Eigen::Vector3d> tau(&twists[kTwistSize * i + 3]);
+    NodeMotion& motion = graph->motions[i];
+    motion.rotation = Orthonormalized(ExpSo3(omega) * motion.rotation);
+    motion.translation += tau;
+  }
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,99 @@
+#ifndef SPLITFUSION_LIB_ENERGY_WARPED_POINTS_H_
+#define SPLITFUSION_LIB_ENERGY_WARPED_POINTS_H_
+
+#include <Eigen/Core>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "splitfusion/lib/association/correspondence.h"
+#include "splitfusion/lib/energy/warp_functor.h"
+
+namespace splitfusion {
+
+/// A node's motion under the increment of its twist: a canonical point v goes
+/// to p + offset with p = rotation (v - rest).
+struct TwistedNode {
+  Eigen::Matrix3d rotation;  ///< exp(omega) R_i
+  Eigen::Vector3d rest;      ///< g_i, canonical, metres.
+  Eigen::Vector3d offset;    ///< g_i + t_i + tau_i, camera frame, metres.
+  /// J^T of the left Jacobian J: dp = (J domega) x p, so that of any function
+  /// with the derivative b by its point, that by omega is J^T (p x b).
+  Eigen::Matrix3d spin_transposed;
+};
+
+/// The node of the graph under `twist` = [omega (rad), tau (m)]. exp and its
+/// derivative are Ceres' AngleAxisToRotationMatrix, over Jets of three.
+TwistedNode TwistNode(const DeformationGraph& graph, int node,
+                      const double* twist);
+
+/// Model points in groups that are carried by the same nodes: what is common to
+/// all residuals of warped points (Eq. 2), whatever their functor.
+///
+///   x = sum_k w_k [ p_k + offset_k ],   dx/d[omega_k, tau_k] = w_k [-[p_k] J |
+///   1]
+class WarpedPoints {
+ public:
+  /// Points of one group, adjacent in the order of the class.
+  struct Group {
+    int begin = 0;                    ///< First point.
+    int end = 0;                      ///< Past the last point.
+    const int* nodes = nullptr;       ///< Their nodes, ascending.
+    int node_count = 0;               ///< Number of nodes.
+    const double* weights = nullptr;  ///< w, by point and node.
+  };
+
+  /// Most points of a group: bounds the memory of one evaluation.
+  static constexpr int kMaxGroupSize = 512;
+
+  /// Sorts the samples; nothing of them is kept.
+  explicit WarpedPoints(const std::vector<const ModelSample*>& samples);
+  WarpedPoints(const WarpedPoints&) = delete;             ///< Not copied.
+  WarpedPoints& operator=(const WarpedPoints&) = delete;  ///< Not copied.
+
+  /// Number of points.
+  int size() const { return static_cast<int>(source_.size()); }
+  /// Groups, ascending by their lists of nodes.
+  const std::vector<Group>& groups() const { return groups_; }
+  /// For every point, in the order of the class, its place among the samples.
+  const std::vector<int>& source() const { return source_; }
+
+  /// Warps the points begin..end of a group; `nodes`: its nodes in order.
+  /// `warped` receives x (three a point), `carried` p_k by point and node; both
+  /// camera frame, metres.
+  void Warp(const Group& group, int begin, int end,
+            const TwistedNode* const* nodes, double* warped,
+            double* carried) const;
+
+  /// Derivative of one residual of point `point` by the twists of the group's
+  /// nodes (6 each, to `row`): `by_point` is its derivative by x, `carried` p_k
+  /// of that point.
+  void DifferentiateByTwists(const Group& group, int point,
+                             const TwistedNode* const* nodes,
+                             const double* carried, const double* by_point,
+                             double* row) const;
+
+ private:
+  std::vector<int> source_;
+  std::vector<double> points_;   // 3 a point, canonical.
+  std::vector<double> weights_;  // By group, point and node.
+  std::vector<int> nodes_;       // By group.
+  std::vector<Group> groups_;
+};
+
+/// The points of a problem's terms: terms of the same samples share them.
+class WarpedPointsCache {
+ public:
+  /// Points of these samples, made or found.
+  std::shared_ptr<const WarpedPoints> Get(
+      const std::vector<const ModelSample*>& samples);
+
+ private:
+  std::vector<std::pair<std::vector<const ModelSample*>,
+                        std::shared_ptr<const WarpedPoints>>>
+      entries_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_WARPED_POINTS_H_
