@@ -1,5 +1,8 @@
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
+#include <openvdb/io/Stream.h>
+
+#include <fstream>
 #include <mutex>
 
 #include "splitfusion/lib/base/atomic_file.h"
@@ -20,14 +23,25 @@ typename Grid::Ptr MakeGrid(const std::string& name, double voxel_size,
   return grid;
 }
 
+/// The grids of a file. OpenVDB does not look whether what it reads is there,
+/// and takes lengths from memory that was never set when a file ends early:
+/// here its end throws.
+openvdb::GridPtrVecPtr ReadGrids(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+  return openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids();
+}
+
 template <typename Grid>
-typename Grid::Ptr ReadGrid(openvdb::io::File* file, const std::string& name,
-                            const std::string& path) {
-  if (!file->hasGrid(name)) {
+typename Grid::Ptr FindGrid(const openvdb::GridPtrVec& grids,
+                            const std::string& name, const std::string& path) {
+  const openvdb::GridBase::Ptr found = openvdb::findGridByName(grids, name);
+  if (!found) {
     throw InputError(path + ": no grid '" + name +
                      "': expected distance, weight and color");
   }
-  auto grid = openvdb::gridPtrCast<Grid>(file->readGrid(name));
+  auto grid = openvdb::gridPtrCast<Grid>(found);
   if (!grid) throw InputError(path + ": grid '" + name + "' has a wrong type");
   return grid;
 }
@@ -89,11 +103,10 @@ void TsdfVolume::Write(const std::string& path) const {
 TsdfVolume TsdfVolume::Read(const std::string& path) {
   openvdb::initialize();
   try {
-    openvdb::io::File file(path);
-    file.open();
-    Grids grids{ReadGrid<openvdb::FloatGrid>(&file, "distance", path),
-                ReadGrid<openvdb::FloatGrid>(&file, "weight", path),
-                ReadGrid<openvdb::Vec3SGrid>(&file, "color", path)};
+    const openvdb::GridPtrVecPtr all = ReadGrids(path);
+    Grids grids{FindGrid<openvdb::FloatGrid>(*all, "distance", path),
+                FindGrid<openvdb::FloatGrid>(*all, "weight", path),
+                FindGrid<openvdb::Vec3SGrid>(*all, "color", path)};
     TsdfOptions options;
     options.voxel_size = grids.distance->voxelSize()[0];
     options.truncation = grids.distance->metaValue<double>("truncation");
@@ -101,6 +114,8 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
     TsdfVolume volume(options);
     *volume.grids_ = grids;
     return volume;
+  } catch (const std::ios::failure&) {
+    throw InputError(path + ": not a readable volume (it ends early)");
   } catch (const openvdb::Exception& e) {
     throw InputError(path + ": not a readable volume (" + e.what() + ")");
   }
