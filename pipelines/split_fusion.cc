@@ -11,17 +11,6 @@
 namespace splitfusion {
 namespace {
 
-/// Live pixels with depth of every surface id.
-std::map<int, int> CountPixels(const LiveView& live) {
-  std::map<int, int> counts;
-  for (int v = 0; v < live.depth.rows; ++v) {
-    for (int u = 0; u < live.depth.cols; ++u) {
-      if (live.depth(v, u) > 0) ++counts[live.labels(v, u)];
-    }
-  }
-  return counts;
-}
-
 /// Whether every surface that is drawn from its mesh is in the rendering.
 bool AllDrawn(const SurfaceMap& surfaces, const MeshRendering& rendering) {
   return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& entry) {
@@ -134,7 +123,7 @@ void SplitFusion::TrackBackground(FrameReport* report) {
 }
 
 void SplitFusion::TrackObjects(FrameReport* report) {
-  const std::map<int, int> pixels = CountPixels(live_);
+  const std::map<int, int> pixels = PixelsOfSurfaces(live_);
   for (const auto& [id, surface] : surfaces_) {
     if (id == 0) continue;
     SurfaceReport surface_report;
@@ -146,11 +135,7 @@ void SplitFusion::TrackObjects(FrameReport* report) {
     } else if (surface_report.pixels < options_.min_tracked_pixels) {
       surface_report.state = "unseen";
     } else {
-      if (hidden_.erase(id) > 0) PlaceWhereSeen(surface.get(), &surface_report);
-      TrackObject(surface.get(), &surface_report);
-      if (surface_report.state == "lost") {
-        Reacquire(surface.get(), &surface_report);
-      }
+      TrackOrFind(surface.get(), &surface_report);
     }
     report->surfaces.push_back(std::move(surface_report));
   }
@@ -197,9 +182,24 @@ void SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
                  still, surface->mutable_graph(), report);
 }
 
-void SplitFusion::Reacquire(Surface* surface, SurfaceReport* report) {
+void SplitFusion::TrackOrFind(Surface* surface, SurfaceReport* report) {
+  if (hidden_.count(report->id) == 0) {
+    TrackObject(surface, report);
+    if (report->state == "lost") TrackWhereSeen(surface, report);
+    return;
+  }
+  TrackWhereSeen(surface, report);
+  if (report->state == "tracked") {
+    hidden_.erase(report->id);
+  } else {
+    report->state = "hidden";  // Too little to know where it is.
+  }
+}
+
+void SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
-  if (!PlaceWhereSeen(surface, report)) return;
+  const bool lost = report->state == "lost";
+  if (!PlaceWhereSeen(surface, report) && lost) return;
   TrackObject(surface, report);
   if (report->state != "lost") return;
   *surface->mutable_graph() = before;
@@ -281,7 +281,7 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
     if (surfaces_.empty()) return;
   }
   if (!options_.model_objects) return;
-  const std::map<int, int> pixels = CountPixels(live_);
+  const std::map<int, int> pixels = PixelsOfSurfaces(live_);
   const double min_pixels =
       options_.min_birth_area * camera_.width * camera_.height;
   for (const auto& [id, instance] : splitter_.instances()) {
@@ -296,7 +296,7 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
 }
 
 void SplitFusion::Record(const Frame& frame, FrameReport* report) {
-  const std::map<int, int> pixels = CountPixels(live_);
+  const std::map<int, int> pixels = PixelsOfSurfaces(live_);
   const Rigid3d world_from_camera = WorldFromCamera();
   trajectory_.push_back({frame.timestamp, world_from_camera});
   for (SurfaceReport& surface_report : report->surfaces) {

@@ -60,8 +60,11 @@ class SplitFusion {
   /// found.
   bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
   void TrackObject(Surface* surface, SurfaceReport* report);
-  /// Tries a lost surface again from where its live pixels are.
-  void Reacquire(Surface* surface, SurfaceReport* report);
+  /// Tracks a surface; if it is lost or was hidden, from where it is seen.
+  void TrackOrFind(Surface* surface, SurfaceReport* report);
+  /// Tracks from where the surface's live pixels are; leaves it where it was
+  /// if that fails.
+  void TrackWhereSeen(Surface* surface, SurfaceReport* report);
   void Fuse(FrameReport* report);
   void FollowInstances(FrameReport* report);
   void RestartLostSurfaces(FrameReport* report);

@@ -115,6 +115,7 @@ void TrackerOptions::Check() const {
   CheckOption(min_samples >= 0, "min_samples", min_samples, ">= 0");
   CheckOption(min_accepted >= 0 && min_accepted <= 1, "min_accepted",
               min_accepted, "0..1");
+  CheckOption(min_fit >= 0 && min_fit <= 1, "min_fit", min_fit, "0..1");
   CheckOption(max_translation > 0, "max_translation", max_translation,
               "metres > 0");
   CheckOption(velocity_gain > 0, "velocity_gain", velocity_gain, "> 0");
@@ -187,12 +188,12 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
                                              : CentroidOf(samples, start);
   Rigid3d motion = MeanRigidMotion(*graph) * MeanRigidMotion(start).inverse();
   motion.translation() = motion * pivot - pivot;
-  report->reason = ReasonForLoss(motion, *report);
+  report->reason = ReasonForLoss(surface, motion, *report);
   if (report->reason.empty() && !graph->rigid()) {
     DeformationGraph before = start;
     ApplyRigidMotion(back, &before);
     TrackNonRigid(samples, live, surface, before.motions, graph, report);
-    report->reason = ReasonForLoss(motion, *report);
+    report->reason = ReasonForLoss(surface, motion, *report);
   }
   return report->reason.empty();
 }
@@ -274,7 +275,8 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   return settled;
 }
 
-std::string SurfaceTracker::ReasonForLoss(const Rigid3d& motion,
+std::string SurfaceTracker::ReasonForLoss(std::uint16_t surface,
+                                          const Rigid3d& motion,
                                           const SurfaceReport& report) const {
   if (report.rounds.empty()) return "no model in view";
   const TrackingRound& last = report.rounds.back();
@@ -288,6 +290,11 @@ std::string SurfaceTracker::ReasonForLoss(const Rigid3d& motion,
   if (counts.accepted < options_.min_accepted * comparable) {
     return "only " + std::to_string(counts.accepted) + " of " +
            std::to_string(comparable) + " model points fit the depth";
+  }
+  const int expected = comparable + counts.other_surface;
+  if (surface != 0 && counts.accepted < options_.min_fit * expected) {
+    return "only " + std::to_string(counts.accepted) + " of " +
+           std::to_string(expected) + " model points in view lie on it";
   }
   if (!last.solver.usable) return "solver: " + last.solver.message;
   const double translation = motion.translation().norm();

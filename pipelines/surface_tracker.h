@@ -33,6 +33,10 @@ struct TrackerOptions {
   /// ... or below this fraction of the samples that meet live depth of the
   /// surface ...
   double min_accepted = 0.25;
+  /// ... or if less than this fraction of what should be in view of it, apart
+  /// from what no depth tells of, lies on it. Not of the background, before
+  /// which undetected things may stand.
+  double min_fit = 0.45;
   /// ... or if the surface moved farther than predicted by this much.
   double max_translation = 0.35;  ///< Metres.
   double max_rotation = 0.6;      ///< Radians.
@@ -92,7 +96,7 @@ class SurfaceTracker {
                 const std::string& name, double prior_factor,
                 const std::vector<NodeMotion>& before, DeformationGraph* graph,
                 SurfaceReport* report) const;
-  std::string ReasonForLoss(const Rigid3d& motion,
+  std::string ReasonForLoss(std::uint16_t surface, const Rigid3d& motion,
                             const SurfaceReport& report) const;
 
   TrackerOptions options_;

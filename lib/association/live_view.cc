@@ -130,4 +130,14 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
   return view;
 }
 
+std::map<int, int> PixelsOfSurfaces(const LiveView& live) {
+  std::map<int, int> counts;
+  for (int v = 0; v < live.depth.rows; ++v) {
+    for (int u = 0; u < live.depth.cols; ++u) {
+      if (live.depth(v, u) > 0) ++counts[live.labels(v, u)];
+    }
+  }
+  return counts;
+}
+
 }  // namespace splitfusion

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/geometry/camera.h"
@@ -56,6 +57,9 @@ inline float Intensity(const cv::Vec3b& bgr) {
 /// @throw InputError if a type or size does not fit.
 LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
                       const cv::Mat& color);
+
+/// Number of pixels with depth of every surface id that has some.
+std::map<int, int> PixelsOfSurfaces(const LiveView& live);
 
 }  // namespace splitfusion
 

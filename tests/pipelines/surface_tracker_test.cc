@@ -93,6 +93,27 @@ TEST(SurfaceTracker, AModelThatHardlyFitsIsNoTrack) {
       << report.reason;
 }
 
+TEST(SurfaceTracker, AnObjectThatIsMostlyElsewhereIsNoTrack) {
+  LiveView live = View(CornerDepth(Rigid3d::Identity()));
+  const std::vector<ModelSample> samples = SamplesOf(live);
+  const int columns = live.labels.cols;
+  const auto state = [&](int id, double part) {
+    live.labels.setTo(9);
+    live.labels.colRange(0, static_cast<int>(part * columns)).setTo(id);
+    DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+    SurfaceReport report;
+    MakeTracker().Track(samples, live, static_cast<std::uint16_t>(id),
+                        Rigid3d::Identity(), &graph, &report);
+    return report.state + ": " + report.reason;
+  };
+  EXPECT_EQ(state(1, 0.7), "tracked: ");
+  EXPECT_NE(state(1, 0.3).find("model points in view lie on it"),
+            std::string::npos)
+      << state(1, 0.3);
+  // Before the background undetected things may stand.
+  EXPECT_EQ(state(0, 0.3), "tracked: ");
+}
+
 TEST(SurfaceTracker, StartsFromThePredictionIfThatFitsBetter) {
   // 25 cm are beyond the gates; the prediction is 1 cm off.
   const Rigid3d motion = MakeMotion({0, 0, 0}, {0, 0, 0.25});
@@ -169,6 +190,7 @@ TEST(TrackerOptions, RefuseValuesOutOfRange) {
           "min_correspondences = 5: expected >= 6");
   refused([](TrackerOptions* o) { o->min_accepted = 2; },
           "min_accepted = 2: expected 0..1");
+  refused([](TrackerOptions* o) { o->min_fit = 2; }, "min_fit = 2: expected");
   refused([](TrackerOptions* o) { o->max_translation = 0; },
           "max_translation = 0: expected metres > 0");
   refused([](TrackerOptions* o) { o->max_rotation = 0; },
