@@ -10,7 +10,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/deformation/surface_edges.h"
-#include "splitfusion/lib/geometry/kd_tree.h"
+#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 namespace {
@@ -56,13 +56,15 @@ void CloseNear(const TriangleMesh& mesh, const DeformationGraph& graph,
   for (const Eigen::Vector3d& g : graph.positions) {
     nodes.push_back(g.cast<float>());
   }
-  const KdTree tree(nodes);
+  const NearestPoint tree(nodes);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, open->size(), 2048),
                     [&](const tbb::blocked_range<std::size_t>& range) {
+                      int nearest = -1;
                       for (std::size_t i = range.begin(); i < range.end();
                            ++i) {
                         float distance = 0;
-                        tree.Nearest(mesh.vertices[i], &distance);
+                        nearest =
+                            tree.Find(mesh.vertices[i], nearest, &distance);
                         if (distance < spacing) (*open)[i] = false;
                       }
                     });

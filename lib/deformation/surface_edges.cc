@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "splitfusion/lib/geometry/kd_tree.h"
+#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 namespace {
@@ -51,10 +52,11 @@ Regions GrowRegions(const std::vector<Eigen::Vector3d>& nodes,
                           std::numeric_limits<float>::max());
   using Entry = std::pair<float, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-  const KdTree vertex_tree(mesh.vertices);
+  const NearestPoint vertex_tree(mesh.vertices);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     float distance = 0;
-    const int vertex = vertex_tree.Nearest(nodes[i].cast<float>(), &distance);
+    const int vertex =
+        vertex_tree.Find(nodes[i].cast<float>(), -1, &distance);
     if (distance >= regions.distance[vertex]) continue;
     regions.distance[vertex] = distance;
     regions.node[vertex] = static_cast<int>(i);

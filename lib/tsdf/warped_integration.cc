@@ -38,7 +38,7 @@ LeafLattice SkinLeaf(const openvdb::Coord& origin, float voxel, float reach,
   const Eigen::Vector3f center = LatticePoint(origin, voxel, 1, 1, 1);
   const float half_diagonal = 0.87f * voxel * kLeafSize;
   float distance = 0;
-  index.NearestNode(center, &distance);
+  int nearest = index.NearestNode(center, &distance);
   lattice.attached = distance < reach + half_diagonal;
   if (!lattice.attached) return lattice;
   int i = 0;
@@ -46,7 +46,7 @@ LeafLattice SkinLeaf(const openvdb::Coord& origin, float voxel, float reach,
     for (int y = 0; y < kLattice; ++y) {
       for (int z = 0; z < kLattice; ++z) {
         lattice.skinning[i++] =
-            index.Skin(LatticePoint(origin, voxel, x, y, z));
+            index.Skin(LatticePoint(origin, voxel, x, y, z), &nearest);
       }
     }
   }
