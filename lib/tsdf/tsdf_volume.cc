@@ -137,5 +137,19 @@ std::vector<LeafBuffers> CollectLeaves(TsdfVolume* volume) {
   return leaves;
 }
 
+std::vector<ConstLeafBuffers> CollectLeaves(const TsdfVolume& volume) {
+  const TsdfVolume::Grids& grids = volume.grids();
+  std::vector<ConstLeafBuffers> leaves;
+  leaves.reserve(volume.leaf_count());
+  auto weight = grids.weight->tree().cbeginLeaf();
+  auto color = grids.color->tree().cbeginLeaf();
+  for (auto leaf = grids.distance->tree().cbeginLeaf(); leaf;
+       ++leaf, ++weight, ++color) {
+    leaves.push_back({leaf->origin(), leaf->buffer().data(),
+                      weight->buffer().data(), color->buffer().data()});
+  }
+  return leaves;
+}
+
 }  // namespace internal
 }  // namespace splitfusion

@@ -32,8 +32,19 @@ struct LeafBuffers {
   openvdb::Vec3s* color = nullptr;
 };
 
+/// The same, to be read.
+struct ConstLeafBuffers {
+  openvdb::Coord origin;
+  const float* distance = nullptr;
+  const float* weight = nullptr;
+  const openvdb::Vec3s* color = nullptr;
+};
+
 /// Buffers of all blocks, in the tree's order.
 std::vector<LeafBuffers> CollectLeaves(TsdfVolume* volume);
+
+/// Buffers of all blocks, in the tree's order.
+std::vector<ConstLeafBuffers> CollectLeaves(const TsdfVolume& volume);
 
 /// Folds one measured voxel into the running mean.
 /// `sdf`: distance along the ray, not yet truncated, metres.
