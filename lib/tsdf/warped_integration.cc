@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 
 namespace splitfusion {
@@ -16,7 +17,7 @@ using internal::kLeafSize;
 
 constexpr int kCell = 4;  // Voxels between lattice points.
 constexpr int kLattice = kLeafSize / kCell + 1;  // Points along an edge: 3.
-constexpr int kLatticePoints = kLattice * kLattice * kLattice;
+using internal::kLatticePoints;                  // kLattice^3.
 
 struct LeafLattice {
   bool attached = false;  // Some node is near enough.
@@ -68,49 +69,24 @@ WarpedLattice WarpLeaf(const openvdb::Coord& origin, float voxel,
   return warped;
 }
 
-void IntegrateLeaf(const internal::VoxelUpdater& updater,
+bool IntegrateLeaf(const internal::FusionImage& image,
                    const WarpedLattice& warped,
                    const internal::LeafBuffers& leaf) {
-  const auto at = [&](int x, int y, int z) -> const Eigen::Vector3f& {
-    return warped[(x * kLattice + y) * kLattice + z];
-  };
-  int offset = 0;
-  for (int x = 0; x < kLeafSize; ++x) {
-    const int cx = x / kCell;
-    const float fx = static_cast<float>(x % kCell) / kCell;
-    for (int y = 0; y < kLeafSize; ++y) {
-      const int cy = y / kCell;
-      const float fy = static_cast<float>(y % kCell) / kCell;
-      std::array<Eigen::Vector3f, kLattice> column;
-      for (int z = 0; z < kLattice; ++z) {
-        const Eigen::Vector3f low =
-            at(cx, cy, z) + fx * (at(cx + 1, cy, z) - at(cx, cy, z));
-        const Eigen::Vector3f high =
-            at(cx, cy + 1, z) +
-            fx * (at(cx + 1, cy + 1, z) - at(cx, cy + 1, z));
-        column[z] = low + fy * (high - low);
-      }
-      for (int z = 0; z < kLeafSize; ++z, ++offset) {
-        const int cz = z / kCell;
-        const float fz = static_cast<float>(z % kCell) / kCell;
-        updater.Update(column[cz] + fz * (column[cz + 1] - column[cz]),
-                       leaf.distance + offset, leaf.weight + offset,
-                       leaf.color + offset);
-      }
-    }
+  float lattice[kLatticePoints][3];
+  for (int i = 0; i < kLatticePoints; ++i) {
+    for (int axis = 0; axis < 3; ++axis) lattice[i][axis] = warped[i][axis];
   }
+  const internal::FusionView& view = image.view();
+  if (!image.MayChange(internal::BoundInImage(view, lattice, kLatticePoints))) {
+    return false;
+  }
+  return internal::FuseWarpedLeaf(view, lattice, internal::ToFused(leaf));
 }
-
-struct CoordHash {
-  std::size_t operator()(const openvdb::Coord& c) const {
-    return static_cast<std::size_t>(c.hash<24>());
-  }
-};
 
 }  // namespace
 
 struct WarpedIntegrator::Cache {
-  std::unordered_map<openvdb::Coord, LeafLattice, CoordHash> lattices;
+  std::unordered_map<openvdb::Coord, LeafLattice> lattices;
 };
 
 WarpedIntegrator::WarpedIntegrator() : cache_(std::make_unique<Cache>()) {}
@@ -127,10 +103,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
                                  TsdfVolume* volume) {
   const std::vector<internal::LeafBuffers> leaves =
       internal::CollectLeaves(volume);
-  const internal::VoxelUpdater updater{
-      observation, static_cast<float>(volume->options().truncation),
-      static_cast<float>(volume->options().max_weight),
-      static_cast<float>(volume->options().max_free_weight)};
+  const internal::FusionImage image(observation, volume->options());
   const float voxel = static_cast<float>(volume->options().voxel_size);
   std::vector<LeafLattice*> lattices;
   std::vector<std::size_t> missing;
@@ -144,12 +117,14 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
     *lattices[i] =
         SkinLeaf(leaves[i].origin, voxel, static_cast<float>(reach), index);
   });
+  std::vector<char> changed(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     if (!lattices[i]->attached) return;
-    IntegrateLeaf(updater,
-                  WarpLeaf(leaves[i].origin, voxel, *lattices[i], warp),
-                  leaves[i]);
+    changed[i] = IntegrateLeaf(
+        image, WarpLeaf(leaves[i].origin, voxel, *lattices[i], warp),
+        leaves[i]);
   });
+  internal::RecordChanges(leaves, changed, volume);
 }
 
 }  // namespace splitfusion
