@@ -156,7 +156,7 @@ void Surface::FinishMesh() {
 }
 
 void Surface::UpdateMesh() {
-  mesh_ = ExtractMesh(volume_, options_.min_mesh_weight);
+  mesh_ = mesh_extractor_.Extract(volume_, options_.min_mesh_weight);
   if (kind_ == SurfaceKind::kNonRigid &&
       GrowGraph(mesh_, options_.graph, &graph_, &history_) > 0) {
     RefreshSkinning();
