@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -144,7 +145,7 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
       }
     }
     float steps[3][3];
-    Eigen::Map<Eigen::Matrix3f>(steps[0]) = at.steps;
+    for (int i = 0; i < 9; ++i) steps[i / 3][i % 3] = at.steps(i % 3, i / 3);
     const bool changed =
         FuseRigidLeaf(image_.view(), at.base.data(), steps, block.leaf());
     EXPECT_TRUE(block == expected) << "round " << round;
@@ -154,9 +155,10 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
     // No block that changes may be passed over.
     float corners[8][3];
     for (int i = 0; i < 8; ++i) {
-      Eigen::Map<Eigen::Vector3f>(corners[i]) =
+      const Eigen::Vector3f corner =
           at.At(7 * (i & 1), 7 * ((i >> 1) & 1)) +
           7 * static_cast<float>((i >> 2) & 1) * at.steps.col(2);
+      std::copy_n(corner.data(), 3, corners[i]);
     }
     EXPECT_TRUE(image_.MayChange(BoundInImage(image_.view(), corners, 8)) ||
                 block == before);
@@ -209,9 +211,10 @@ TEST_F(VoxelFusion, AWarpedBlockIsUpdatedWhereItsLatticeCarriesIt) {
 
 TEST_F(VoxelFusion, FreeSpaceThatIsKnownWellDoesNotChange) {
   seen_ = ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1.5));
-  const FusionImage image(seen_, kOptions);
+  const TsdfOptions options = {kVoxel, 0.04, 20, 20};
+  const FusionImage image(seen_, options);
   Block block;
-  block.distance.fill(static_cast<float>(kOptions.truncation));
+  block.distance.fill(static_cast<float>(options.truncation));
   block.weight.fill(0);
   block.color.fill(0);
   const float base[3] = {0, 0, 1};
@@ -224,7 +227,7 @@ TEST_F(VoxelFusion, FreeSpaceThatIsKnownWellDoesNotChange) {
   EXPECT_FALSE(fuse(kFirmWeight + 1));
   // Pixels that say nothing change nothing.
   seen_.role.setTo(static_cast<int>(PixelRole::kNone));
-  const FusionImage nothing(seen_, kOptions);
+  const FusionImage nothing(seen_, options);
   block.weight.fill(0);
   EXPECT_FALSE(FuseRigidLeaf(nothing.view(), base, steps, block.leaf()));
 }
