@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
+#include "splitfusion/lib/tsdf/internal/leaf_table.h"
 
 namespace splitfusion {
 namespace {
@@ -19,52 +21,97 @@ constexpr int kCell = 4;  // Voxels between lattice points.
 constexpr int kLattice = kLeafSize / kCell + 1;  // Points along an edge: 3.
 using internal::kLatticePoints;                  // kLattice^3.
 
-struct LeafLattice {
-  bool attached = false;  // Some node is near enough.
-  std::array<Skinning, kLatticePoints> skinning;
+/// Lattice points are counted z fastest. A block owns the eight that are not on
+/// its upper faces; the others are its neighbours'.
+constexpr int kOwnPoints = 8;
+struct LatticeIndex {
+  explicit LatticeIndex(int i) : x(i / 9), y(i / 3 % 3), z(i % 3) {}
+  /// Which neighbour owns the point: 4 dx + 2 dy + dz, d = 1 if it is the next
+  /// one along the axis. 0: the block itself.
+  int owner() const { return (x / 2) * 4 + (y / 2) * 2 + z / 2; }
+  /// Number of the point among those of its owner.
+  int own() const { return (x % 2) * 4 + (y % 2) * 2 + z % 2; }
+  int x, y, z;
 };
 
+/// Skinning of a block's lattice.
+struct LeafLattice {
+  bool attached = false;  // Some node is near enough.
+  std::array<Skinning, kOwnPoints> own;
+  /// Points whose owner is not there or not attached.
+  std::vector<std::pair<int, Skinning>> border;
+};
+
+/// A block and those that own its lattice, see LatticeIndex::owner(); -1: not
+/// there or not attached.
+using Owners = std::array<int, 8>;
+using OwnPoints = std::array<Eigen::Vector3f, kOwnPoints>;
 using WarpedLattice = std::array<Eigen::Vector3f, kLatticePoints>;
 
-Eigen::Vector3f LatticePoint(const openvdb::Coord& origin, float voxel, int x,
-                             int y, int z) {
-  return voxel * Eigen::Vector3f(static_cast<float>(origin.x() + kCell * x),
-                                 static_cast<float>(origin.y() + kCell * y),
-                                 static_cast<float>(origin.z() + kCell * z));
+Eigen::Vector3f LatticePoint(const openvdb::Coord& origin, float voxel,
+                             const LatticeIndex& at) {
+  return voxel * Eigen::Vector3f(static_cast<float>(origin.x() + kCell * at.x),
+                                 static_cast<float>(origin.y() + kCell * at.y),
+                                 static_cast<float>(origin.z() + kCell * at.z));
 }
 
-LeafLattice SkinLeaf(const openvdb::Coord& origin, float voxel, float reach,
-                     const SkinningIndex& index) {
-  LeafLattice lattice;
-  const Eigen::Vector3f center = LatticePoint(origin, voxel, 1, 1, 1);
+/// Skins the points that a block owns.
+void SkinOwn(const openvdb::Coord& origin, float voxel, float reach,
+             const SkinningIndex& index, LeafLattice* lattice) {
+  const LatticeIndex center(kLatticePoints / 2);
   const float half_diagonal = 0.87f * voxel * kLeafSize;
   float distance = 0;
-  int nearest = index.NearestNode(center, &distance);
-  lattice.attached = distance < reach + half_diagonal;
-  if (!lattice.attached) return lattice;
-  int i = 0;
-  for (int x = 0; x < kLattice; ++x) {
-    for (int y = 0; y < kLattice; ++y) {
-      for (int z = 0; z < kLattice; ++z) {
-        lattice.skinning[i++] =
-            index.Skin(LatticePoint(origin, voxel, x, y, z), &nearest);
-      }
-    }
+  int nearest =
+      index.NearestNode(LatticePoint(origin, voxel, center), &distance);
+  lattice->attached = distance < reach + half_diagonal;
+  if (!lattice->attached) return;
+  for (int i = 0; i < kLatticePoints; ++i) {
+    const LatticeIndex at(i);
+    if (at.owner() != 0) continue;
+    lattice->own[at.own()] =
+        index.Skin(LatticePoint(origin, voxel, at), &nearest);
   }
-  return lattice;
 }
 
-WarpedLattice WarpLeaf(const openvdb::Coord& origin, float voxel,
-                       const LeafLattice& lattice, const WarpField& warp) {
+/// Skins the points of a block that have no owner.
+void SkinBorder(const openvdb::Coord& origin, float voxel, const Owners& owners,
+                const SkinningIndex& index, LeafLattice* lattice) {
+  int nearest = -1;
+  for (int i = 0; i < kLatticePoints && lattice->attached; ++i) {
+    const LatticeIndex at(i);
+    if (owners[at.owner()] >= 0) continue;
+    lattice->border.emplace_back(
+        i, index.Skin(LatticePoint(origin, voxel, at), &nearest));
+  }
+}
+
+/// Warps the points that a block owns.
+OwnPoints WarpOwn(const openvdb::Coord& origin, float voxel,
+                  const LeafLattice& lattice, const WarpField& warp) {
+  OwnPoints warped;
+  for (int i = 0; i < kLatticePoints && lattice.attached; ++i) {
+    const LatticeIndex at(i);
+    if (at.owner() != 0) continue;
+    warped[at.own()] =
+        warp.WarpPoint(lattice.own[at.own()], LatticePoint(origin, voxel, at));
+  }
+  return warped;
+}
+
+/// All points of a block, given those that blocks own.
+WarpedLattice GatherLattice(const openvdb::Coord& origin, float voxel,
+                            const Owners& owners,
+                            const std::vector<OwnPoints>& own,
+                            const LeafLattice& lattice, const WarpField& warp) {
   WarpedLattice warped;
-  int i = 0;
-  for (int x = 0; x < kLattice; ++x) {
-    for (int y = 0; y < kLattice; ++y) {
-      for (int z = 0; z < kLattice; ++z, ++i) {
-        warped[i] = warp.WarpPoint(lattice.skinning[i],
-                                   LatticePoint(origin, voxel, x, y, z));
-      }
-    }
+  for (int i = 0; i < kLatticePoints; ++i) {
+    const LatticeIndex at(i);
+    const int owner = owners[at.owner()];
+    if (owner >= 0) warped[i] = own[owner][at.own()];
+  }
+  for (const auto& [i, skinning] : lattice.border) {
+    warped[i] =
+        warp.WarpPoint(skinning, LatticePoint(origin, voxel, LatticeIndex(i)));
   }
   return warped;
 }
@@ -81,6 +128,28 @@ bool IntegrateLeaf(const internal::FusionImage& image,
     return false;
   }
   return internal::FuseWarpedLeaf(view, lattice, internal::ToFused(leaf));
+}
+
+/// The attached blocks that own the lattice of every block.
+std::vector<Owners> FindOwners(const std::vector<internal::LeafBuffers>& leaves,
+                               const std::vector<LeafLattice*>& lattices) {
+  std::vector<internal::LeafPlace> places;
+  places.reserve(leaves.size());
+  for (const internal::LeafBuffers& leaf : leaves) {
+    const openvdb::Coord& origin = leaf.origin;
+    places.push_back({origin.x() >> 3, origin.y() >> 3, origin.z() >> 3});
+  }
+  const internal::LeafTable table(places);
+  std::vector<Owners> owners(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
+    const auto [x, y, z] = places[i];
+    for (int k = 0; k < 8; ++k) {
+      const int owner =
+          table.Find(x + (k >> 2), y + ((k >> 1) & 1), z + (k & 1)) - 1;
+      owners[i][k] = owner >= 0 && lattices[owner]->attached ? owner : -1;
+    }
+  });
+  return owners;
 }
 
 }  // namespace
@@ -113,16 +182,25 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
     if (is_new) missing.push_back(i);
   }
   tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
+    SkinOwn(leaves[missing[m]].origin, voxel, static_cast<float>(reach), index,
+            lattices[missing[m]]);
+  });
+  const std::vector<Owners> owners = FindOwners(leaves, lattices);
+  tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
     const std::size_t i = missing[m];
-    *lattices[i] =
-        SkinLeaf(leaves[i].origin, voxel, static_cast<float>(reach), index);
+    SkinBorder(leaves[i].origin, voxel, owners[i], index, lattices[i]);
+  });
+  std::vector<OwnPoints> own(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
+    own[i] = WarpOwn(leaves[i].origin, voxel, *lattices[i], warp);
   });
   std::vector<char> changed(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     if (!lattices[i]->attached) return;
-    changed[i] = IntegrateLeaf(
-        image, WarpLeaf(leaves[i].origin, voxel, *lattices[i], warp),
-        leaves[i]);
+    changed[i] = IntegrateLeaf(image,
+                               GatherLattice(leaves[i].origin, voxel, owners[i],
+                                             own, *lattices[i], warp),
+                               leaves[i]);
   });
   internal::RecordChanges(leaves, changed, volume);
 }
