@@ -1,5 +1,7 @@
 #include "splitfusion/lib/geometry/nearest_point.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,7 +11,8 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kLeafPoints = 8;  // At most.
+constexpr int kLeafPoints = 8;         // At most.
+constexpr int kParallelPoints = 4096;  // Worth a task.
 
 /// Axis along which the points reach farthest.
 int WidestAxis(const std::vector<Eigen::Vector3f>& points, const int* begin,
@@ -77,8 +80,18 @@ void NearestPoint::Build(int node, int level, int begin, int end,
     return points[a][split.axis] < points[b][split.axis];
   });
   split.value = points[(*order)[middle]][split.axis];
-  Build(2 * node + 1, level + 1, begin, middle, order, points);
-  Build(right, level + 1, middle, end, order, points);
+  const auto build_left = [&] {
+    Build(2 * node + 1, level + 1, begin, middle, order, points);
+  };
+  const auto build_right = [&] {
+    Build(right, level + 1, middle, end, order, points);
+  };
+  if (end - begin > kParallelPoints) {
+    tbb::parallel_invoke(build_left, build_right);
+  } else {
+    build_left();
+    build_right();
+  }
 }
 
 void NearestPoint::Scan(int leaf, Search* search) const {
