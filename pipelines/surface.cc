@@ -5,6 +5,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/geometry/mesh_pieces.h"
+#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 namespace {
@@ -121,8 +122,9 @@ void Surface::AllocateUncovered(const LiveView& live) {
     centers.push_back(
         (graph_.positions[i] + graph_.motions[i].translation).cast<float>());
   }
-  const KdTree nodes(centers);
+  const NearestPoint nodes(centers);
   std::vector<Eigen::Vector3d> uncovered;
+  int node = -1;
   constexpr int kPixelStride = 4;
   for (int v = 0; v < live.depth.rows; v += kPixelStride) {
     for (int u = 0; u < live.depth.cols; u += kPixelStride) {
@@ -133,7 +135,7 @@ void Surface::AllocateUncovered(const LiveView& live) {
       const cv::Vec3f& p = live.map.points(v, u);
       const Eigen::Vector3f point(p[0], p[1], p[2]);
       float distance = 0;
-      const int node = nodes.Nearest(point, &distance);
+      node = nodes.Find(point, node, &distance);
       if (distance < graph_.node_spacing || distance > options_.growth_reach) {
         continue;
       }
@@ -154,7 +156,7 @@ void Surface::FinishMesh() {
 }
 
 void Surface::UpdateMesh() {
-  mesh_ = ExtractMesh(volume_, options_.min_mesh_weight);
+  mesh_ = mesh_extractor_.Extract(volume_, options_.min_mesh_weight);
   if (kind_ == SurfaceKind::kNonRigid &&
       GrowGraph(mesh_, options_.graph, &graph_, &history_) > 0) {
     RefreshSkinning();

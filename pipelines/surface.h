@@ -11,6 +11,7 @@
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "splitfusion/lib/segmentation/label_table.h"
+#include "splitfusion/lib/tsdf/mesh_extractor.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 #include "splitfusion/lib/tsdf/warped_integration.h"
 
@@ -123,6 +124,7 @@ class Surface {
   DeformationGraph graph_;
   double planned_node_spacing_ = 0;
   std::unique_ptr<SkinningIndex> index_;
+  MeshExtractor mesh_extractor_;
   TriangleMesh mesh_;
   std::vector<Skinning> mesh_skinning_;
   MotionHistory history_;

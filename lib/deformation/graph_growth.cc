@@ -10,7 +10,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/deformation/surface_edges.h"
-#include "splitfusion/lib/geometry/kd_tree.h"
+#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 namespace {
@@ -56,16 +56,17 @@ void CloseNear(const TriangleMesh& mesh, const DeformationGraph& graph,
   for (const Eigen::Vector3d& g : graph.positions) {
     nodes.push_back(g.cast<float>());
   }
-  const KdTree tree(nodes);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, open->size(), 2048),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i < range.end();
-                           ++i) {
-                        float distance = 0;
-                        tree.Nearest(mesh.vertices[i], &distance);
-                        if (distance < spacing) (*open)[i] = false;
-                      }
-                    });
+  const NearestPoint tree(nodes);
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, open->size(), 2048),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        int nearest = -1;
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          float distance = 0;
+          nearest = tree.Find(mesh.vertices[i], nearest, &distance);
+          if (distance < spacing) (*open)[i] = false;
+        }
+      });
 }
 
 /// Vertices that keep `spacing` from the nodes and from one another, greedily
@@ -89,16 +90,46 @@ std::vector<Eigen::Vector3d> UncoveredPositions(const TriangleMesh& mesh,
   return added;
 }
 
-void BlendNewMotions(const SkinningIndex& index, const DeformationGraph& old,
-                     const std::vector<NodeMotion>& old_motions,
-                     const std::vector<Eigen::Vector3d>& added,
-                     std::vector<NodeMotion>* motions) {
-  DeformationGraph graph = old;
-  graph.motions = old_motions;
-  const WarpField warp(graph);
+/// The nodes that carry some new ones, as a graph of their own.
+struct Carriers {
+  DeformationGraph graph;  // Without edges.
+  std::vector<int> nodes;  // Their indices in the whole graph.
+  std::vector<Skinning>
+      skinning;  // Of the new nodes, by the carriers' indices.
+};
+
+Carriers FindCarriers(const DeformationGraph& graph, const SkinningIndex& index,
+                      const std::vector<Eigen::Vector3d>& added) {
+  Carriers carriers;
+  std::map<int, int> number;
   for (const Eigen::Vector3d& g : added) {
-    const Eigen::Vector3f point = g.cast<float>();
-    motions->push_back(warp.BlendMotion(index.Skin(point), point));
+    Skinning skinning = index.Skin(g.cast<float>());
+    for (int k = 0; k < skinning.count; ++k) {
+      const int node = skinning.nodes[k];
+      const auto [entry, is_new] =
+          number.emplace(node, static_cast<int>(carriers.nodes.size()));
+      if (is_new) {
+        carriers.nodes.push_back(node);
+        carriers.graph.positions.push_back(graph.positions[node]);
+      }
+      skinning.nodes[k] = entry->second;
+    }
+    carriers.skinning.push_back(skinning);
+  }
+  carriers.graph.motions.resize(carriers.nodes.size());
+  return carriers;
+}
+
+/// Appends the motions of new nodes, blended from those of their carriers.
+void BlendNewMotions(const std::vector<Eigen::Vector3d>& added,
+                     Carriers* carriers, std::vector<NodeMotion>* motions) {
+  for (std::size_t i = 0; i < carriers->nodes.size(); ++i) {
+    carriers->graph.motions[i] = (*motions)[carriers->nodes[i]];
+  }
+  const WarpField warp(carriers->graph);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    motions->push_back(
+        warp.BlendMotion(carriers->skinning[i], added[i].cast<float>()));
   }
 }
 
@@ -143,16 +174,14 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
   if (graph->size() == 0) {
     graph->motions.resize(added.size());
   } else {
-    const SkinningIndex index(*graph, options.neighbors_per_point);
-    std::vector<NodeMotion> motions = graph->motions;
-    BlendNewMotions(index, *graph, graph->motions, added, &motions);
+    Carriers carriers = FindCarriers(
+        *graph, SkinningIndex(*graph, options.neighbors_per_point), added);
+    BlendNewMotions(added, &carriers, &graph->motions);
     if (history != nullptr) {
       for (FrameMotions& frame : history->frames) {
-        const std::vector<NodeMotion> old = frame.motions;
-        BlendNewMotions(index, *graph, old, added, &frame.motions);
+        BlendNewMotions(added, &carriers, &frame.motions);
       }
     }
-    graph->motions = std::move(motions);
   }
   graph->positions.insert(graph->positions.end(), added.begin(), added.end());
   graph->neighbors = ConnectAlongSurface(graph->positions, canonical_mesh,

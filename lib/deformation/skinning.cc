@@ -4,13 +4,64 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/kd_tree.h"
 
 namespace splitfusion {
 namespace {
 
 constexpr int kMaxCandidates = 128;
+
+/// The few nearest of the nodes shown to it, nearest first, the lower index
+/// among equals.
+class NearestFew {
+ public:
+  explicit NearestFew(int size) : size_(size) {
+    entries_.fill({std::numeric_limits<float>::max(), -1});
+  }
+
+  void Insert(float squared, int node) {
+    const std::pair<float, int> entry(squared, node);
+    if (!(entry < entries_[size_ - 1])) return;
+    int i = size_ - 1;
+    for (; i > 0 && entry < entries_[i - 1]; --i) entries_[i] = entries_[i - 1];
+    entries_[i] = entry;
+    reach_ = std::sqrt(FarthestSquared());
+  }
+
+  /// No node farther than this from a place `distance` away from the point can
+  /// be among the few, rounding included.
+  float Reach(float distance) const { return 1.0001f * (reach_ + distance); }
+
+  float FarthestSquared() const { return entries_[size_ - 1].first; }
+  float squared(int i) const { return entries_[i].first; }
+  int node(int i) const { return entries_[i].second; }
+
+  /// Orders the first `count` entries by their nodes.
+  void SortByNode(int count) {
+    std::sort(entries_.begin(), entries_.begin() + count,
+              [](const auto& a, const auto& b) { return a.second < b.second; });
+  }
+
+ private:
+  int size_;
+  float reach_ = std::numeric_limits<float>::max();
+  std::array<std::pair<float, int>, kMaxSkinningNodes + 1> entries_;
+};
+
+/// Orders candidates by their distance from node `center`.
+void SortByDistance(const std::vector<Eigen::Vector3f>& positions, int center,
+                    std::vector<int>* nodes) {
+  std::vector<std::pair<float, int>> order;
+  for (const int node : *nodes) {
+    order.emplace_back((positions[node] - positions[center]).norm(), node);
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < order.size(); ++i) (*nodes)[i] = order[i].second;
+}
 
 std::vector<Eigen::Vector3f> ToFloat(const std::vector<Eigen::Vector3d>& in) {
   std::vector<Eigen::Vector3f> out;
@@ -59,43 +110,62 @@ std::vector<int> Candidates(const DeformationGraph& graph, const KdTree& tree,
 SkinningIndex::SkinningIndex(const DeformationGraph& graph,
                              int neighbors_per_point)
     : k_(neighbors_per_point),
-      positions_(ToFloat(graph.positions)),
-      tree_(positions_) {
+      node_count_(graph.size()),
+      tree_(ToFloat(graph.positions)) {
   CheckOption(k_ >= 1 && k_ <= kMaxSkinningNodes, "neighbors_per_point", k_,
               "1.." + std::to_string(kMaxSkinningNodes));
+  const std::vector<Eigen::Vector3f> positions = ToFloat(graph.positions);
+  const KdTree islands(positions);
   candidates_.resize(graph.size());
-  for (int i = 0; i < graph.size(); ++i) {
-    candidates_[i] = Candidates(graph, tree_, i, k_ + 1);
-  }
+  tbb::parallel_for(0, graph.size(), [&](int i) {
+    CandidateList& list = candidates_[i];
+    list.nodes = Candidates(graph, islands, i, k_ + 1);
+    SortByDistance(positions, i, &list.nodes);
+    for (const int node : list.nodes) {
+      list.x.push_back(positions[node].x());
+      list.y.push_back(positions[node].y());
+      list.z.push_back(positions[node].z());
+      list.distance.push_back((positions[node] - positions[i]).norm());
+    }
+  });
 }
 
 Skinning SkinningIndex::Skin(const Eigen::Vector3f& point) const {
+  int nearest = -1;
+  return Skin(point, &nearest);
+}
+
+Skinning SkinningIndex::Skin(const Eigen::Vector3f& point,
+                             int* nearest) const {
+  float distance = 0;
+  *nearest = tree_.Find(point, *nearest, &distance);
   Skinning skinning;
-  if (positions_.size() == 1) {
+  if (node_count_ == 1) {
     skinning.count = 1;
     skinning.weights[0] = 1;
     return skinning;
   }
-  const std::vector<int>& candidates = candidates_[NearestNode(point, nullptr)];
-  std::array<std::pair<float, int>, kMaxCandidates> order;
-  int count = 0;
-  for (const int node : candidates) {
-    order[count++] = {(positions_[node] - point).squaredNorm(), node};
-  }
+  const CandidateList& list = candidates_[*nearest];
+  const int count = static_cast<int>(list.nodes.size());
   const int used = std::min(k_, count);
-  const int sorted = std::min(used + 1, count);
-  std::partial_sort(order.begin(), order.begin() + sorted,
-                    order.begin() + count);
-  const float farthest = std::sqrt(order[sorted - 1].first);
+  NearestFew few(std::min(used + 1, count));
+  for (int i = 0; i < count; ++i) {
+    // By the triangle inequality all that follow are farther than those found.
+    if (list.distance[i] > few.Reach(distance)) break;
+    const float dx = list.x[i] - point.x();
+    const float dy = list.y[i] - point.y();
+    const float dz = list.z[i] - point.z();
+    few.Insert(dx * dx + (dy * dy + dz * dz), list.nodes[i]);
+  }
+  const float farthest = std::sqrt(few.FarthestSquared());
   const float d_max = count > used ? farthest : 2 * farthest;
-  std::sort(order.begin(), order.begin() + used,
-            [](const auto& a, const auto& b) { return a.second < b.second; });
+  few.SortByNode(used);
   float sum = 0;
   for (int k = 0; k < used; ++k) {
     // The floor keeps the sum positive where all nodes are equally far.
-    const float closeness = 1 - std::sqrt(order[k].first) / d_max;
+    const float closeness = 1 - std::sqrt(few.squared(k)) / d_max;
     const float weight = std::max(closeness * closeness, 1e-8f);
-    skinning.nodes[skinning.count] = order[k].second;
+    skinning.nodes[skinning.count] = few.node(k);
     skinning.weights[skinning.count++] = weight;
     sum += weight;
   }
@@ -108,9 +178,10 @@ std::vector<Skinning> SkinningIndex::Skin(
   std::vector<Skinning> skinnings(points.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 1024),
                     [&](const tbb::blocked_range<std::size_t>& range) {
+                      int nearest = -1;
                       for (std::size_t i = range.begin(); i < range.end();
                            ++i) {
-                        skinnings[i] = Skin(points[i]);
+                        skinnings[i] = Skin(points[i], &nearest);
                       }
                     });
   return skinnings;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "splitfusion/lib/deformation/deformation_graph.h"
-#include "splitfusion/lib/geometry/kd_tree.h"
+#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 
@@ -40,19 +40,31 @@ class SkinningIndex {
   /// Skinning of a canonical point (metres). Thread-safe.
   Skinning Skin(const Eigen::Vector3f& point) const;
 
+  /// The same, faster after a point nearby: `nearest` is a node that may be
+  /// near (-1 = unknown) and becomes the point's nearest one.
+  Skinning Skin(const Eigen::Vector3f& point, int* nearest) const;
+
   /// Skinning of many canonical points, in parallel.
   std::vector<Skinning> Skin(const std::vector<Eigen::Vector3f>& points) const;
 
   /// Nearest node of a canonical point; `distance` (metres) may be null.
   int NearestNode(const Eigen::Vector3f& point, float* distance) const {
-    return tree_.Nearest(point, distance);
+    return tree_.Find(point, -1, distance);
   }
 
  private:
+  /// The nodes that may carry the points nearest to one node, by their distance
+  /// from it.
+  struct CandidateList {
+    std::vector<int> nodes;
+    std::vector<float> x, y, z;   // Their positions.
+    std::vector<float> distance;  // From the one node, metres.
+  };
+
   int k_;
-  std::vector<Eigen::Vector3f> positions_;
-  KdTree tree_;
-  std::vector<std::vector<int>> candidates_;  // By nearest node.
+  int node_count_;
+  NearestPoint tree_;
+  std::vector<CandidateList> candidates_;  // By nearest node.
 };
 
 /// Node motions as affine maps p~ = A p + b in float, for warping many points.

@@ -4,11 +4,11 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <queue>
 #include <set>
 #include <utility>
 
 #include "splitfusion/lib/geometry/kd_tree.h"
+#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 namespace {
@@ -43,35 +43,82 @@ struct Regions {
   std::vector<float> distance;
 };
 
+/// Vertices waiting for their turn by their distance: in buckets of about an
+/// edge's length, first come first served within a bucket. A vertex may get its
+/// turn too early and once more; that costs less than a heap.
+class DistanceQueue {
+ public:
+  struct Entry {
+    float distance;
+    int vertex;
+  };
+
+  explicit DistanceQueue(float width) : inverse_width_(1 / width) {}
+
+  void Push(float distance, int vertex) {
+    const auto bucket = static_cast<std::size_t>(distance * inverse_width_);
+    if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
+    buckets_[bucket].push_back({distance, vertex});
+  }
+
+  /// The next entry; false if there is none.
+  bool Pop(Entry* entry) {
+    while (current_ < buckets_.size() && next_ == buckets_[current_].size()) {
+      buckets_[current_++] = {};
+      next_ = 0;
+    }
+    if (current_ == buckets_.size()) return false;
+    *entry = buckets_[current_][next_++];
+    return true;
+  }
+
+ private:
+  float inverse_width_;
+  std::vector<std::vector<Entry>> buckets_;
+  std::size_t current_ = 0, next_ = 0;
+};
+
+/// Mean length of some edges of a mesh, metres.
+float EdgeLength(const TriangleMesh& mesh) {
+  const std::size_t step = mesh.triangles.size() / 256 + 1;
+  float sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += step, ++count) {
+    const Eigen::Vector3i& t = mesh.triangles[i];
+    sum += (mesh.vertices[t[0]] - mesh.vertices[t[1]]).norm();
+  }
+  return sum > 0 ? sum / static_cast<float>(count) : 1.0f;
+}
+
 Regions GrowRegions(const std::vector<Eigen::Vector3d>& nodes,
                     const TriangleMesh& mesh, const MeshGraph& graph) {
   Regions regions;
   regions.node.assign(mesh.vertices.size(), -1);
   regions.distance.assign(mesh.vertices.size(),
                           std::numeric_limits<float>::max());
-  using Entry = std::pair<float, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-  const KdTree vertex_tree(mesh.vertices);
+  DistanceQueue queue(EdgeLength(mesh));
+  const NearestPoint vertex_tree(mesh.vertices);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     float distance = 0;
-    const int vertex = vertex_tree.Nearest(nodes[i].cast<float>(), &distance);
+    const int vertex = vertex_tree.Find(nodes[i].cast<float>(), -1, &distance);
     if (distance >= regions.distance[vertex]) continue;
     regions.distance[vertex] = distance;
     regions.node[vertex] = static_cast<int>(i);
-    queue.emplace(distance, vertex);
+    queue.Push(distance, vertex);
   }
-  while (!queue.empty()) {
-    const auto [distance, vertex] = queue.top();
-    queue.pop();
+  DistanceQueue::Entry entry;
+  while (queue.Pop(&entry)) {
+    const auto [distance, vertex] = entry;
     if (distance > regions.distance[vertex]) continue;
     for (int e = graph.begin[vertex]; e < graph.begin[vertex + 1]; ++e) {
       const int next = graph.to[e];
+      if (distance >= regions.distance[next]) continue;
       const float length =
           distance + (mesh.vertices[next] - mesh.vertices[vertex]).norm();
       if (length >= regions.distance[next]) continue;
       regions.distance[next] = length;
       regions.node[next] = regions.node[vertex];
-      queue.emplace(length, next);
+      queue.Push(length, next);
     }
   }
   return regions;
@@ -85,16 +132,15 @@ void Shorten(int from, int to, float length, Lengths* lengths) {
 }
 
 Lengths AdjacentRegions(const Regions& regions, const TriangleMesh& mesh,
-                        const MeshGraph& graph, std::size_t node_count) {
+                        std::size_t node_count) {
   Lengths lengths(node_count);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const int a = regions.node[v];
-    for (int e = graph.begin[v]; a >= 0 && e < graph.begin[v + 1]; ++e) {
-      const int b = regions.node[graph.to[e]];
-      if (b < 0 || b == a) continue;
-      const float length =
-          regions.distance[v] + regions.distance[graph.to[e]] +
-          (mesh.vertices[graph.to[e]] - mesh.vertices[v]).norm();
+  for (const Eigen::Vector3i& triangle : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const int v = triangle[k], w = triangle[(k + 1) % 3];
+      const int a = regions.node[v], b = regions.node[w];
+      if (a == b || a < 0 || b < 0) continue;
+      const float length = regions.distance[v] + regions.distance[w] +
+                           (mesh.vertices[w] - mesh.vertices[v]).norm();
       Shorten(a, b, length, &lengths);
       Shorten(b, a, length, &lengths);
     }
@@ -172,9 +218,8 @@ void TieParts(const std::vector<Eigen::Vector3d>& nodes,
 std::vector<std::vector<int>> ConnectAlongSurface(
     const std::vector<Eigen::Vector3d>& nodes, const TriangleMesh& mesh,
     int count) {
-  const MeshGraph graph = BuildMeshGraph(mesh);
   const Lengths lengths = WithSecondRing(AdjacentRegions(
-      GrowRegions(nodes, mesh, graph), mesh, graph, nodes.size()));
+      GrowRegions(nodes, mesh, BuildMeshGraph(mesh)), mesh, nodes.size()));
   std::vector<std::set<int>> edges(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     std::vector<std::pair<float, int>> order;

@@ -4,93 +4,96 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
-#include <vector>
+#include <opencv2/core.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/window_planes.h"
 
 namespace splitfusion {
 namespace {
 
-/// Normal of the plane a u + b v + c = 1 / z fitted to inverse depth. A plane
-/// of space is linear in (u, v, 1/z), so that the fit has no bias on slopes:
-/// n . X = d with X = z ((u-cx)/fx, (v-cy)/fy, 1) gives
+/// Normal of the plane a u + b v + c = 1 / z fitted to inverse depth, not
+/// normalised. A plane of space is linear in (u, v, 1/z), so that the fit has
+/// no bias on slopes: n . X = d with X = z ((u-cx)/fx, (v-cy)/fy, 1) gives
 /// 1/z = (n_x (u-cx)/fx + n_y (v-cy)/fy + n_z) / d.
-class InverseDepthPlane {
- public:
-  void Add(float x, float y, float inverse_z) {
-    sx_ += x, sy_ += y, sz_ += inverse_z;
-    sxx_ += x * x, sxy_ += x * y, syy_ += y * y;
-    sxz_ += x * inverse_z, syz_ += y * inverse_z;
-    ++count_;
-  }
-  int count() const { return count_; }
-
-  /// Plane normal (not normalised) with x, y in normalised image coordinates
-  /// relative to (x0, y0); false if the points lie on a line.
-  bool Solve(float x0, float y0, Eigen::Vector3f* normal) const {
-    const float n = static_cast<float>(count_);
-    const float cxx = sxx_ - sx_ * sx_ / n;
-    const float cxy = sxy_ - sx_ * sy_ / n;
-    const float cyy = syy_ - sy_ * sy_ / n;
-    const float cxz = sxz_ - sx_ * sz_ / n;
-    const float cyz = syz_ - sy_ * sz_ / n;
-    const float determinant = cxx * cyy - cxy * cxy;
-    if (!(determinant > 1e-4f * cxx * cyy)) return false;
-    const float a = (cxz * cyy - cyz * cxy) / determinant;
-    const float b = (cyz * cxx - cxz * cxy) / determinant;
-    const float c = (sz_ - a * sx_ - b * sy_) / n;
-    *normal = Eigen::Vector3f(a, b, c - a * x0 - b * y0);
-    return true;
-  }
-
- private:
-  float sx_ = 0, sy_ = 0, sz_ = 0, sxx_ = 0, sxy_ = 0, syy_ = 0;
-  float sxz_ = 0, syz_ = 0;
-  int count_ = 0;
-};
+///
+/// `x0`, `y0`: normalised image coordinates of the window's centre. False if
+/// the points lie on a line.
+bool FitPlane(const WindowSums& s, float x0, float y0,
+              Eigen::Vector3f* normal) {
+  const float n = s.count;
+  const float cxx = s.xx - s.x * s.x / n;
+  const float cxy = s.xy - s.x * s.y / n;
+  const float cyy = s.yy - s.y * s.y / n;
+  const float cxz = s.xz - s.x * s.z / n;
+  const float cyz = s.yz - s.y * s.z / n;
+  const float determinant = cxx * cyy - cxy * cxy;
+  if (!(determinant > 1e-4f * cxx * cyy)) return false;
+  const float a = (cxz * cyy - cyz * cxy) / determinant;
+  const float b = (cyz * cxx - cxz * cxy) / determinant;
+  const float c = (s.z - a * s.x - b * s.y) / n;
+  *normal = Eigen::Vector3f(a, b, c - a * x0 - b * y0);
+  return true;
+}
 
 class NormalEstimator {
  public:
   NormalEstimator(const cv::Mat& depth, const PinholeCamera& camera,
                   const PointMapOptions& options)
-      : depth_(depth),
-        inverse_depth_(1.0 / depth),
-        options_(options),
+      : options_(options),
+        width_(depth.cols),
         inverse_fx_(static_cast<float>(1 / camera.fx)),
         inverse_fy_(static_cast<float>(1 / camera.fy)),
         cx_(static_cast<float>(camera.cx)),
-        cy_(static_cast<float>(camera.cy)) {}
+        cy_(static_cast<float>(camera.cy)) {
+    // Windows may reach over the border, where there is no depth.
+    const int radius = options.normal_radius;
+    cv::copyMakeBorder(depth, depth_, radius, radius, radius,
+                       radius + kWindowPixels, cv::BORDER_CONSTANT,
+                       cv::Scalar(0));
+    inverse_depth_ = 1.0 / depth_;
+  }
 
   cv::Vec3f Point(int u, int v, float z) const {
     return {(u - cx_) * inverse_fx_ * z, (v - cy_) * inverse_fy_ * z, z};
   }
 
-  cv::Vec3f Normal(int u, int v, float z) const {
+  /// Normals of a row of the image; 0 where there is no depth.
+  void Normals(int v, cv::Vec3f* normals) const {
     const int radius = options_.normal_radius;
-    // Below z, so that pixels without depth never pass.
-    const float gate = std::min(
-        0.9f * z, static_cast<float>(options_.edge_factor * DepthSigma(z) +
-                                     options_.edge_offset));
-    InverseDepthPlane plane;
-    const int v_end = std::min(v + radius, depth_.rows - 1);
-    const int u_begin = std::max(u - radius, 0);
-    const int u_end = std::min(u + radius, depth_.cols - 1);
-    for (int j = std::max(v - radius, 0); j <= v_end; ++j) {
-      const float* row = depth_.ptr<float>(j);
-      const float* inverse = inverse_depth_.ptr<float>(j);
-      for (int i = u_begin; i <= u_end; ++i) {
-        if (std::abs(row[i] - z) < gate) {
-          plane.Add((i - u) * inverse_fx_, (j - v) * inverse_fy_, inverse[i]);
-        }
+    for (int u = 0; u < width_; u += kWindowPixels) {
+      const float* depth = depth_[v + radius] + u + radius;
+      float gates[kWindowPixels];
+      for (int i = 0; i < kWindowPixels; ++i) gates[i] = Gate(depth[i]);
+      WindowSums sums[kWindowPixels];
+      SumWindows(
+          {depth_[v] + u, inverse_depth_[v] + u,
+           static_cast<int>(depth_.step1()), radius, inverse_fx_, inverse_fy_},
+          depth, gates, sums);
+      const int count = std::min(kWindowPixels, width_ - u);
+      for (int i = 0; i < count; ++i) {
+        normals[u + i] =
+            depth[i] > 0 ? Normal(u + i, v, sums[i]) : cv::Vec3f(0, 0, 0);
       }
     }
+  }
+
+ private:
+  /// Difference of depth up to which pixels count, metres; below `z`, so that
+  /// those without depth never pass.
+  float Gate(float z) const {
+    return std::min(0.9f * z,
+                    static_cast<float>(options_.edge_factor * DepthSigma(z) +
+                                       options_.edge_offset));
+  }
+
+  cv::Vec3f Normal(int u, int v, const WindowSums& sums) const {
     // A third of the window: thinner support is an edge or a speck.
-    const int window = (2 * radius + 1) * (2 * radius + 1);
+    const int side = 2 * options_.normal_radius + 1;
     Eigen::Vector3f normal;
-    if (3 * plane.count() < window ||
-        !plane.Solve((u - cx_) * inverse_fx_, (v - cy_) * inverse_fy_,
-                     &normal)) {
+    if (3 * static_cast<int>(sums.count) < side * side ||
+        !FitPlane(sums, (u - cx_) * inverse_fx_, (v - cy_) * inverse_fy_,
+                  &normal)) {
       return {0, 0, 0};
     }
     normal.normalize();
@@ -98,11 +101,11 @@ class NormalEstimator {
     return {-normal.x(), -normal.y(), -normal.z()};
   }
 
- private:
-  const cv::Mat& depth_;
-  const cv::Mat inverse_depth_;  // Of no use where there is no depth.
   const PointMapOptions& options_;
+  const int width_;
   const float inverse_fx_, inverse_fy_, cx_, cy_;
+  cv::Mat_<float> depth_;          // With a border of no depth.
+  cv::Mat_<float> inverse_depth_;  // Of no use where there is no depth.
 };
 
 }  // namespace
@@ -135,9 +138,8 @@ PointMap ComputePointMap(const cv::Mat& depth, const PinholeCamera& camera,
       const bool valid = row[u] > 0;
       map.points(v, u) =
           valid ? estimator.Point(u, v, row[u]) : cv::Vec3f(0, 0, 0);
-      map.normals(v, u) =
-          valid ? estimator.Normal(u, v, row[u]) : cv::Vec3f(0, 0, 0);
     }
+    estimator.Normals(v, map.normals[v]);
   });
   return map;
 }

@@ -3,21 +3,23 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/render/internal/depth_bounds.h"
+#include "splitfusion/lib/render/internal/ray_bundle.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 
 namespace splitfusion {
 namespace {
 
 using internal::kLeafSize;
-
-using DistanceLeaf = openvdb::FloatTree::LeafNodeType;
-using DistanceAccessor = openvdb::FloatGrid::ConstAccessor;
-using ColorAccessor = openvdb::Vec3SGrid::ConstAccessor;
+using internal::kLeafVoxels;
+using internal::LeafPlace;
+using internal::RayBundle;
 
 /// A sample of the volume at a point of index space.
 struct Sample {
@@ -25,204 +27,58 @@ struct Sample {
   Eigen::Vector3f gradient = Eigen::Vector3f::Zero();  // Per voxel.
 };
 
-/// Nearest and farthest depth of any block behind tiles of the image: where a
-/// ray has to look. A tile without a block has near > far.
-class DepthBounds {
- public:
-  DepthBounds(const TsdfVolume& volume, const Rigid3f& camera_from_canonical,
-              const PinholeCamera& camera, const RayCastOptions& options)
-      : columns_((camera.width + kTile - 1) / kTile),
-        rows_((camera.height + kTile - 1) / kTile),
-        near_(static_cast<float>(options.min_depth)),
-        far_(static_cast<float>(options.max_depth)),
-        bounds_(static_cast<std::size_t>(columns_) * rows_, {far_, near_}) {
-    const float voxel = static_cast<float>(volume.options().voxel_size);
-    const float radius = 0.87f * voxel * kLeafSize;
-    for (auto leaf = volume.grids().distance->tree().cbeginLeaf(); leaf;
-         ++leaf) {
-      const openvdb::Coord o = leaf->origin();
-      const Eigen::Vector3f center(static_cast<float>(o.x()),
-                                   static_cast<float>(o.y()),
-                                   static_cast<float>(o.z()));
-      const float half = 0.5f * (kLeafSize - 1);
-      Add(camera,
-          camera_from_canonical *
-              (voxel * (center + Eigen::Vector3f::Constant(half))),
-          radius);
-    }
-  }
+/// Largest integer that is not above `x`. (std::floor is a function call for
+/// the processors that all are built for.)
+int FloorToInt(float x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (static_cast<float>(truncated) > x);
+}
 
-  /// Depth range of the ray through pixel (u, v); false if there is nothing.
-  bool Range(int u, int v, float* near, float* far) const {
-    const auto& bound =
-        bounds_[static_cast<std::size_t>(v / kTile) * columns_ + u / kTile];
-    *near = bound.first, *far = bound.second;
-    return *near < *far;
+/// Reads the cubes of eight voxels that rays cross the surface in.
+class CubeReader {
+ public:
+  explicit CubeReader(const internal::RayVolume& volume) : volume_(volume) {}
+
+  /// Distances of the cube whose low corner is voxel (x, y, z); false where one
+  /// of them is unobserved.
+  bool Read(int x, int y, int z, float value[2][2][2]) const {
+    constexpr int kLast = kLeafSize - 1;
+    const bool inside =
+        (x & kLast) != kLast && (y & kLast) != kLast && (z & kLast) != kLast;
+    int leaf = volume_.table.Find(x >> 3, y >> 3, z >> 3);
+    float lowest_weight = 1;
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) {
+        for (int k = 0; k < 2; ++k) {
+          if (!inside) {
+            leaf = volume_.table.Find((x + i) >> 3, (y + j) >> 3, (z + k) >> 3);
+          }
+          const int offset =
+              ((x + i) & 7) << 6 | ((y + j) & 7) << 3 | ((z + k) & 7);
+          lowest_weight = std::min(lowest_weight, volume_.weight[leaf][offset]);
+          value[i][j][k] = volume_.distance[leaf][offset];
+        }
+      }
+    }
+    return lowest_weight > 0;
   }
 
  private:
-  static constexpr int kTile = 8;  // Pixels.
-
-  void Add(const PinholeCamera& camera, const Eigen::Vector3f& center,
-           float radius) {
-    if (center.z() + radius < near_ || center.z() - radius > far_) return;
-    const float z = std::max(center.z() - radius, near_);
-    const float reach_u = static_cast<float>(camera.fx) * radius / z;
-    const float reach_v = static_cast<float>(camera.fy) * radius / z;
-    // Where the sphere reaches behind the near plane its image is unbounded.
-    const Eigen::Vector2f pixel = camera.Project<float>(
-        {center.x(), center.y(), std::max(center.z(), near_)});
-    const auto tile = [](float p, int count) {
-      return std::clamp(static_cast<int>(std::floor(p / kTile)), 0, count - 1);
-    };
-    if (pixel.x() + reach_u < 0 || pixel.y() + reach_v < 0 ||
-        pixel.x() - reach_u > static_cast<float>(camera.width) ||
-        pixel.y() - reach_v > static_cast<float>(camera.height)) {
-      return;
-    }
-    const int u_end = tile(pixel.x() + reach_u, columns_);
-    const int v_end = tile(pixel.y() + reach_v, rows_);
-    for (int v = tile(pixel.y() - reach_v, rows_); v <= v_end; ++v) {
-      for (int u = tile(pixel.x() - reach_u, columns_); u <= u_end; ++u) {
-        auto& bound = bounds_[static_cast<std::size_t>(v) * columns_ + u];
-        bound.first = std::min(bound.first, z);
-        bound.second =
-            std::min(far_, std::max(bound.second, center.z() + radius));
-      }
-    }
-  }
-
-  int columns_, rows_;
-  float near_, far_;
-  std::vector<std::pair<float, float>> bounds_;
+  const internal::RayVolume& volume_;
 };
 
-/// Casts rays into one volume; one object per task.
-class Caster {
+/// Finds where rays that have gone through the surface crossed it.
+class Refiner {
  public:
-  Caster(const TsdfVolume& volume, const Rigid3f& camera_from_canonical,
-         const RayCastOptions& options)
-      : voxel_(static_cast<float>(volume.options().voxel_size)),
-        canonical_from_camera_(camera_from_canonical.inverse()),
-        options_(options),
-        distance_(volume.grids().distance->getConstAccessor()),
-        weight_(volume.grids().weight->getConstAccessor()),
-        color_(volume.grids().color->getConstAccessor()) {}
-
-  /// First surface along the ray through z-depth 1 point `direction` of the
-  /// camera frame, between z-depths `t` and `t_end`. Returns its z-depth, 0 if
-  /// there is none; `gradient` is in the canonical frame.
-  float Cast(const Eigen::Vector3f& direction, float t, float t_end,
-             Eigen::Vector3f* position, Eigen::Vector3f* gradient) {
-    // Index space position at z-depth t: origin + t * step.
-    const Eigen::Vector3f origin =
-        canonical_from_camera_.translation() / voxel_;
-    const Eigen::Vector3f step =
-        canonical_from_camera_.linear() * direction / voxel_;
-    const float voxel_step = 1.0f / step.norm();  // z-depth of one voxel.
-    float previous = -1;  // Distance at the sample before; < 0: none.
-    while (t < t_end) {
-      const Eigen::Vector3f p = origin + t * step;
-      const openvdb::Coord at = Nearest(p);
-      const DistanceLeaf* leaf = distance_.probeConstLeaf(at);
-      if (leaf == nullptr) {
-        previous = -1;
-        t = SkipBlock(p, step, t, at);
-        continue;
-      }
-      const openvdb::Index offset = DistanceLeaf::coordToOffset(at);
-      const float weight = weight_.getValue(at);
-      const float distance = leaf->getValue(offset);
-      if (weight < static_cast<float>(options_.min_weight)) {
-        previous = -1;
-      } else {
-        if (previous > 0 && distance <= 0) {
-          const float hit = Refine(origin, step, t, voxel_step, gradient);
-          if (hit > 0) {
-            *position = origin + hit * step;
-            return hit;
-          }
-        }
-        // Behind a crossing that could not be refined it is tried again.
-        if (distance > 0) previous = distance;
-      }
-      // Distances are along the ray to within the slope: half is safe.
-      const float free =
-          distance > 0 && weight > 0 ? 0.5f * distance / voxel_ : 0;
-      t += voxel_step * std::max(free, 0.7f);
-    }
-    return 0;
-  }
-
-  /// Interpolated colour at a point of index space, BGR.
-  cv::Vec3b Color(const Eigen::Vector3f& p) {
-    const openvdb::Vec3s rgb = color_.getValue(Nearest(p));
-    const auto byte = [](float v) {
-      return cv::saturate_cast<std::uint8_t>(v * 255);
-    };
-    return {byte(rgb[2]), byte(rgb[1]), byte(rgb[0])};
-  }
-
- private:
-  static openvdb::Coord Nearest(const Eigen::Vector3f& p) {
-    return {static_cast<int>(std::floor(p.x() + 0.5f)),
-            static_cast<int>(std::floor(p.y() + 0.5f)),
-            static_cast<int>(std::floor(p.z() + 0.5f))};
-  }
-
-  /// z-depth just behind the empty block that holds `at`.
-  static float SkipBlock(const Eigen::Vector3f& p, const Eigen::Vector3f& step,
-                         float t, const openvdb::Coord& at) {
-    float leave = 1e9f;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float low = static_cast<float>(at[axis] & ~(kLeafSize - 1)) - 0.5f;
-      const float wall = step[axis] > 0 ? low + kLeafSize : low;
-      if (std::abs(step[axis]) > 1e-9f) {
-        leave = std::min(leave, (wall - p[axis]) / step[axis]);
-      }
-    }
-    return t + std::max(leave, 0.0f) + 1e-4f;
-  }
-
-  /// Trilinear sample with its gradient; false where a voxel is unobserved.
-  bool Interpolate(const Eigen::Vector3f& p, Sample* sample) {
-    const Eigen::Vector3f floor = p.array().floor();
-    const Eigen::Vector3f f = p - floor;
-    const openvdb::Coord base(static_cast<int>(floor.x()),
-                              static_cast<int>(floor.y()),
-                              static_cast<int>(floor.z()));
-    float value[2][2][2];
-    for (int x = 0; x < 2; ++x) {
-      for (int y = 0; y < 2; ++y) {
-        for (int z = 0; z < 2; ++z) {
-          const openvdb::Coord at = base.offsetBy(x, y, z);
-          if (!(weight_.getValue(at) > 0)) return false;
-          value[x][y][z] = distance_.getValue(at);
-        }
-      }
-    }
-    const auto mix = [](float a, float b, float w) { return a + w * (b - a); };
-    float by_x[2], slab[2][2], dz[2];
-    for (int x = 0; x < 2; ++x) {
-      for (int y = 0; y < 2; ++y) {
-        slab[x][y] = mix(value[x][y][0], value[x][y][1], f.z());
-      }
-      by_x[x] = mix(slab[x][0], slab[x][1], f.y());
-      dz[x] = mix(value[x][0][1] - value[x][0][0],
-                  value[x][1][1] - value[x][1][0], f.y());
-    }
-    sample->distance = mix(by_x[0], by_x[1], f.x());
-    sample->gradient.x() = by_x[1] - by_x[0];
-    sample->gradient.y() =
-        mix(slab[0][1] - slab[0][0], slab[1][1] - slab[1][0], f.x());
-    sample->gradient.z() = mix(dz[0], dz[1], f.x());
-    return true;
-  }
+  explicit Refiner(const internal::RayVolume& volume)
+      : cubes_(volume),
+        origin_(volume.origin[0], volume.origin[1], volume.origin[2]) {}
 
   /// Finds the crossing near `t`, where the distance is not positive any more,
   /// by false position: the distance is nearly linear along the ray.
-  float Refine(const Eigen::Vector3f& origin, const Eigen::Vector3f& step,
-               float t, float voxel_step, Eigen::Vector3f* gradient) {
+  float Refine(const Eigen::Vector3f& step, float t, float voxel_step,
+               Eigen::Vector3f* gradient) const {
+    const Eigen::Vector3f& origin = origin_;
     float near = t - 2.5f * voxel_step;
     float far = t + voxel_step;
     Sample sample, at_near, at_far;
@@ -247,45 +103,189 @@ class Caster {
     return near + ratio * (far - near);
   }
 
-  float voxel_;
-  Rigid3f canonical_from_camera_;
-  const RayCastOptions& options_;
-  DistanceAccessor distance_;
-  openvdb::FloatGrid::ConstAccessor weight_;
-  ColorAccessor color_;
+  /// The point of index space at z-depth `t` of a ray.
+  Eigen::Vector3f Place(const Eigen::Vector3f& step, float t) const {
+    return origin_ + t * step;
+  }
+
+ private:
+  /// Trilinear sample with its gradient; false where a voxel is unobserved.
+  bool Interpolate(const Eigen::Vector3f& p, Sample* sample) const {
+    const int x0 = FloorToInt(p.x());
+    const int y0 = FloorToInt(p.y());
+    const int z0 = FloorToInt(p.z());
+    const Eigen::Vector3f f =
+        p - Eigen::Vector3f(static_cast<float>(x0), static_cast<float>(y0),
+                            static_cast<float>(z0));
+    float value[2][2][2];
+    if (!cubes_.Read(x0, y0, z0, value)) return false;
+    const auto mix = [](float a, float b, float w) { return a + w * (b - a); };
+    float by_x[2], slab[2][2], dz[2];
+    for (int x = 0; x < 2; ++x) {
+      for (int y = 0; y < 2; ++y) {
+        slab[x][y] = mix(value[x][y][0], value[x][y][1], f.z());
+      }
+      by_x[x] = mix(slab[x][0], slab[x][1], f.y());
+      dz[x] = mix(value[x][0][1] - value[x][0][0],
+                  value[x][1][1] - value[x][1][0], f.y());
+    }
+    sample->distance = mix(by_x[0], by_x[1], f.x());
+    sample->gradient.x() = by_x[1] - by_x[0];
+    sample->gradient.y() =
+        mix(slab[0][1] - slab[0][0], slab[1][1] - slab[1][0], f.x());
+    sample->gradient.z() = mix(dz[0], dz[1], f.x());
+    return true;
+  }
+
+  CubeReader cubes_;
+  Eigen::Vector3f origin_;
 };
+
+/// All that the rays of one image have in common.
+struct Cast {
+  internal::RayVolume volume;
+  std::vector<LeafPlace> places;              // Of the blocks.
+  std::vector<const openvdb::Vec3s*> color;   // By block number.
+  std::vector<float> no_distance, no_weight;  // Of the block that is not there.
+};
+
+Cast MakeCast(const TsdfVolume& volume, const Rigid3f& camera_from_canonical,
+              const RayCastOptions& options) {
+  const float voxel = static_cast<float>(volume.options().voxel_size);
+  const std::vector<internal::ConstLeafBuffers> leaves =
+      internal::CollectLeaves(volume);
+  std::vector<LeafPlace> places;
+  places.reserve(leaves.size());
+  for (const internal::ConstLeafBuffers& leaf : leaves) {
+    places.push_back(
+        {leaf.origin.x() >> 3, leaf.origin.y() >> 3, leaf.origin.z() >> 3});
+  }
+  const Eigen::Vector3f origin =
+      camera_from_canonical.inverse().translation() / voxel;
+  Cast cast{{internal::LeafTable(places),
+             {},
+             {},
+             {origin.x(), origin.y(), origin.z()},
+             voxel,
+             static_cast<float>(options.min_weight)},
+            std::move(places),
+            {nullptr},
+            std::vector<float>(kLeafVoxels, 0.0f),
+            std::vector<float>(kLeafVoxels, -1.0f)};
+  cast.volume.distance.push_back(cast.no_distance.data());
+  cast.volume.weight.push_back(cast.no_weight.data());
+  for (const internal::ConstLeafBuffers& leaf : leaves) {
+    cast.volume.distance.push_back(leaf.distance);
+    cast.volume.weight.push_back(leaf.weight);
+    cast.color.push_back(leaf.color);
+  }
+  return cast;
+}
+
+/// Colour of the voxel nearest to a point of index space, BGR.
+cv::Vec3b ColorAt(const Cast& cast, const Eigen::Vector3f& p) {
+  const int x = FloorToInt(p.x() + 0.5f);
+  const int y = FloorToInt(p.y() + 0.5f);
+  const int z = FloorToInt(p.z() + 0.5f);
+  const int leaf = cast.volume.table.Find(x >> 3, y >> 3, z >> 3);
+  if (leaf == 0) return {0, 0, 0};
+  const openvdb::Vec3s& rgb =
+      cast.color[leaf][(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
+  const auto byte = [](float v) {
+    return cv::saturate_cast<std::uint8_t>(v * 255);
+  };
+  return {byte(rgb[2]), byte(rgb[1]), byte(rgb[0])};
+}
 
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Casts the rays of all pixels, rows in parallel; calls
-/// visit(v, u, direction, depth, position, gradient, caster) for those that
-/// hit.
-template <typename Visit>
-void CastAll(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
-             const PinholeCamera& camera, const RayCastOptions& options,
-             const Visit& visit) {
-  const Rigid3f motion = camera_from_canonical.cast<float>();
-  const DepthBounds bounds(volume, motion, camera, options);
-  tbb::parallel_for(
-      tbb::blocked_range<int>(0, camera.height, 8),
-      [&](const tbb::blocked_range<int>& rows) {
-        Caster caster(volume, motion, options);
-        for (int v = rows.begin(); v < rows.end(); ++v) {
-          for (int u = 0; u < camera.width; ++u) {
-            float near = 0, far = 0;
-            if (!bounds.Range(u, v, &near, &far)) continue;
-            const Eigen::Vector3f direction = camera.BackProject<float>(
-                static_cast<float>(u), static_cast<float>(v), 1.0f);
-            Eigen::Vector3f position, gradient;
-            const float depth =
-                caster.Cast(direction, near, far, &position, &gradient);
-            if (depth > 0) {
-              visit(v, u, direction, depth, position, gradient, &caster);
-            }
-          }
-        }
-      });
-}
+/// Casts the rays of some rows of an image; one object per task.
+class RowCaster {
+ public:
+  RowCaster(const Cast& cast, const internal::DepthBounds& bounds,
+            const Rigid3f& camera_from_canonical, int row_begin, int row_end,
+            ModelMap* map)
+      : cast_(cast),
+        bounds_(bounds),
+        rotation_(camera_from_canonical.linear()),
+        canonical_from_camera_(camera_from_canonical.inverse().linear()),
+        v_(row_begin),
+        v_end_(row_end),
+        map_(map),
+        refiner_(cast.volume) {}
+
+  /// Lets the rays walk until there are none left.
+  void Run() {
+    for (int r = 0; r < RayBundle::kRays; ++r) active_ += Load(r);
+    while (active_ > 0) {
+      if (!internal::StepRays(cast_.volume, &rays_)) continue;
+      for (int r = 0; r < RayBundle::kRays; ++r) {
+        if (rays_.stopped[r] == 0) continue;
+        const bool hit = rays_.crossing[r] > 0 && Hit(r);
+        if (hit || !(rays_.t[r] < rays_.t_end[r])) active_ += Load(r) - 1;
+      }
+    }
+  }
+
+ private:
+  /// Puts the next ray in slot `r`; false if there is none.
+  bool Load(int r) {
+    rays_.t[r] = rays_.t_end[r] = 0;
+    for (; v_ < v_end_; ++v_, u_ = 0) {
+      while (u_ < map_->camera.width) {
+        const int u = u_++;
+        if (!bounds_.Range(u, v_, &rays_.t[r], &rays_.t_end[r])) continue;
+        Aim(r, u);
+        return true;
+      }
+    }
+    rays_.t[r] = rays_.t_end[r] = 0;
+    return false;
+  }
+
+  void Aim(int r, int u) {
+    pixels_[r] = {u, v_};
+    directions_[r] = map_->camera.BackProject<float>(
+        static_cast<float>(u), static_cast<float>(v_), 1.0f);
+    const Eigen::Vector3f step =
+        canonical_from_camera_ * directions_[r] / cast_.volume.voxel_size;
+    rays_.step_x[r] = step.x();
+    rays_.step_y[r] = step.y();
+    rays_.step_z[r] = step.z();
+    rays_.voxel_step[r] = 1.0f / step.norm();
+    rays_.previous[r] = -1;
+  }
+
+  /// Writes the pixel of a ray that went through the surface; false if it did
+  /// not after all.
+  bool Hit(int r) {
+    const Eigen::Vector3f step(rays_.step_x[r], rays_.step_y[r],
+                               rays_.step_z[r]);
+    Eigen::Vector3f gradient;
+    const float depth = refiner_.Refine(step, rays_.crossing[r],
+                                        rays_.voxel_step[r], &gradient);
+    if (!(depth > 0)) return false;
+    const auto [u, v] = pixels_[r];
+    const Eigen::Vector3f normal = (rotation_ * gradient).normalized();
+    if (normal.dot(directions_[r]) < 0) {
+      map_->points(v, u) = ToCv(depth * directions_[r]);
+      map_->normals(v, u) = ToCv(normal);
+      map_->color(v, u) = ColorAt(cast_, refiner_.Place(step, depth));
+    }
+    return true;
+  }
+
+  const Cast& cast_;
+  const internal::DepthBounds& bounds_;
+  Eigen::Matrix3f rotation_, canonical_from_camera_;
+  int v_, v_end_, u_ = 0;  // Of the next ray.
+  ModelMap* map_;
+  Refiner refiner_;
+  int active_ = 0;
+  RayBundle rays_{};
+  std::array<std::pair<int, int>, RayBundle::kRays> pixels_;
+  std::array<Eigen::Vector3f, RayBundle::kRays> directions_;
+};
 
 }  // namespace
 
@@ -300,17 +300,16 @@ ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
                  const PinholeCamera& camera, const RayCastOptions& options) {
   ModelMap map;
   map.Clear(camera);
-  const Eigen::Matrix3f rotation = camera_from_canonical.linear().cast<float>();
-  CastAll(volume, camera_from_canonical, camera, options,
-          [&](int v, int u, const Eigen::Vector3f& direction, float depth,
-              const Eigen::Vector3f& position, const Eigen::Vector3f& gradient,
-              Caster* caster) {
-            const Eigen::Vector3f normal = (rotation * gradient).normalized();
-            if (!(normal.dot(direction) < 0)) return;
-            map.points(v, u) = ToCv(depth * direction);
-            map.normals(v, u) = ToCv(normal);
-            map.color(v, u) = caster->Color(position);
-          });
+  const Rigid3f motion = camera_from_canonical.cast<float>();
+  const Cast cast = MakeCast(volume, motion, options);
+  const internal::DepthBounds bounds(cast.places, cast.volume.voxel_size,
+                                     motion, camera, options);
+  constexpr int kRows = 8;  // Of one task.
+  tbb::parallel_for(0, (camera.height + kRows - 1) / kRows, [&](int task) {
+    RowCaster(cast, bounds, motion, task * kRows,
+              std::min(camera.height, (task + 1) * kRows), &map)
+        .Run();
+  });
   return map;
 }
 

@@ -106,7 +106,9 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
     const openvdb::GridPtrVecPtr all = ReadGrids(path);
     Grids grids{FindGrid<openvdb::FloatGrid>(*all, "distance", path),
                 FindGrid<openvdb::FloatGrid>(*all, "weight", path),
-                FindGrid<openvdb::Vec3SGrid>(*all, "color", path)};
+                FindGrid<openvdb::Vec3SGrid>(*all, "color", path),
+                {},
+                0};
     TsdfOptions options;
     options.voxel_size = grids.distance->voxelSize()[0];
     options.truncation = grids.distance->metaValue<double>("truncation");
@@ -135,6 +137,34 @@ std::vector<LeafBuffers> CollectLeaves(TsdfVolume* volume) {
                       weight->buffer().data(), color->buffer().data()});
   }
   return leaves;
+}
+
+std::vector<ConstLeafBuffers> CollectLeaves(const TsdfVolume& volume) {
+  const TsdfVolume::Grids& grids = volume.grids();
+  std::vector<ConstLeafBuffers> leaves;
+  leaves.reserve(volume.leaf_count());
+  auto weight = grids.weight->tree().cbeginLeaf();
+  auto color = grids.color->tree().cbeginLeaf();
+  for (auto leaf = grids.distance->tree().cbeginLeaf(); leaf;
+       ++leaf, ++weight, ++color) {
+    leaves.push_back({leaf->origin(), leaf->buffer().data(),
+                      weight->buffer().data(), color->buffer().data()});
+  }
+  return leaves;
+}
+
+FusedLeaf ToFused(const LeafBuffers& leaf) {
+  static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
+  return {leaf.distance, leaf.weight, leaf.color->asPointer()};
+}
+
+void RecordChanges(const std::vector<LeafBuffers>& leaves,
+                   const std::vector<char>& changed, TsdfVolume* volume) {
+  TsdfVolume::Grids& grids = volume->grids();
+  ++grids.time;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (changed[i]) grids.changed[leaves[i].origin] = grids.time;
+  }
 }
 
 }  // namespace internal

@@ -5,9 +5,12 @@
 #include <array>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
+#include "splitfusion/lib/tsdf/internal/leaf_table.h"
 
 namespace splitfusion {
 namespace {
@@ -16,101 +19,143 @@ using internal::kLeafSize;
 
 constexpr int kCell = 4;  // Voxels between lattice points.
 constexpr int kLattice = kLeafSize / kCell + 1;  // Points along an edge: 3.
-constexpr int kLatticePoints = kLattice * kLattice * kLattice;
+using internal::kLatticePoints;                  // kLattice^3.
 
-struct LeafLattice {
-  bool attached = false;  // Some node is near enough.
-  std::array<Skinning, kLatticePoints> skinning;
+/// Lattice points are counted z fastest. A block owns the eight that are not on
+/// its upper faces; the others are its neighbours'.
+constexpr int kOwnPoints = 8;
+struct LatticeIndex {
+  explicit LatticeIndex(int i) : x(i / 9), y(i / 3 % 3), z(i % 3) {}
+  /// Which neighbour owns the point: 4 dx + 2 dy + dz, d = 1 if it is the next
+  /// one along the axis. 0: the block itself.
+  int owner() const { return (x / 2) * 4 + (y / 2) * 2 + z / 2; }
+  /// Number of the point among those of its owner.
+  int own() const { return (x % 2) * 4 + (y % 2) * 2 + z % 2; }
+  int x, y, z;
 };
 
+/// Skinning of a block's lattice.
+struct LeafLattice {
+  bool attached = false;  // Some node is near enough.
+  std::array<Skinning, kOwnPoints> own;
+  /// Points whose owner is not there or not attached.
+  std::vector<std::pair<int, Skinning>> border;
+};
+
+/// A block and those that own its lattice, see LatticeIndex::owner(); -1: not
+/// there or not attached.
+using Owners = std::array<int, 8>;
+using OwnPoints = std::array<Eigen::Vector3f, kOwnPoints>;
 using WarpedLattice = std::array<Eigen::Vector3f, kLatticePoints>;
 
-Eigen::Vector3f LatticePoint(const openvdb::Coord& origin, float voxel, int x,
-                             int y, int z) {
-  return voxel * Eigen::Vector3f(static_cast<float>(origin.x() + kCell * x),
-                                 static_cast<float>(origin.y() + kCell * y),
-                                 static_cast<float>(origin.z() + kCell * z));
+Eigen::Vector3f LatticePoint(const openvdb::Coord& origin, float voxel,
+                             const LatticeIndex& at) {
+  return voxel * Eigen::Vector3f(static_cast<float>(origin.x() + kCell * at.x),
+                                 static_cast<float>(origin.y() + kCell * at.y),
+                                 static_cast<float>(origin.z() + kCell * at.z));
 }
 
-LeafLattice SkinLeaf(const openvdb::Coord& origin, float voxel, float reach,
-                     const SkinningIndex& index) {
-  LeafLattice lattice;
-  const Eigen::Vector3f center = LatticePoint(origin, voxel, 1, 1, 1);
+/// Skins the points that a block owns.
+void SkinOwn(const openvdb::Coord& origin, float voxel, float reach,
+             const SkinningIndex& index, LeafLattice* lattice) {
+  const LatticeIndex center(kLatticePoints / 2);
   const float half_diagonal = 0.87f * voxel * kLeafSize;
   float distance = 0;
-  index.NearestNode(center, &distance);
-  lattice.attached = distance < reach + half_diagonal;
-  if (!lattice.attached) return lattice;
-  int i = 0;
-  for (int x = 0; x < kLattice; ++x) {
-    for (int y = 0; y < kLattice; ++y) {
-      for (int z = 0; z < kLattice; ++z) {
-        lattice.skinning[i++] =
-            index.Skin(LatticePoint(origin, voxel, x, y, z));
-      }
-    }
+  int nearest =
+      index.NearestNode(LatticePoint(origin, voxel, center), &distance);
+  lattice->attached = distance < reach + half_diagonal;
+  if (!lattice->attached) return;
+  for (int i = 0; i < kLatticePoints; ++i) {
+    const LatticeIndex at(i);
+    if (at.owner() != 0) continue;
+    lattice->own[at.own()] =
+        index.Skin(LatticePoint(origin, voxel, at), &nearest);
   }
-  return lattice;
 }
 
-WarpedLattice WarpLeaf(const openvdb::Coord& origin, float voxel,
-                       const LeafLattice& lattice, const WarpField& warp) {
-  WarpedLattice warped;
-  int i = 0;
-  for (int x = 0; x < kLattice; ++x) {
-    for (int y = 0; y < kLattice; ++y) {
-      for (int z = 0; z < kLattice; ++z, ++i) {
-        warped[i] = warp.WarpPoint(lattice.skinning[i],
-                                   LatticePoint(origin, voxel, x, y, z));
-      }
-    }
+/// Skins the points of a block that have no owner.
+void SkinBorder(const openvdb::Coord& origin, float voxel, const Owners& owners,
+                const SkinningIndex& index, LeafLattice* lattice) {
+  int nearest = -1;
+  for (int i = 0; i < kLatticePoints && lattice->attached; ++i) {
+    const LatticeIndex at(i);
+    if (owners[at.owner()] >= 0) continue;
+    lattice->border.emplace_back(
+        i, index.Skin(LatticePoint(origin, voxel, at), &nearest));
+  }
+}
+
+/// Warps the points that a block owns.
+OwnPoints WarpOwn(const openvdb::Coord& origin, float voxel,
+                  const LeafLattice& lattice, const WarpField& warp) {
+  OwnPoints warped;
+  for (int i = 0; i < kLatticePoints && lattice.attached; ++i) {
+    const LatticeIndex at(i);
+    if (at.owner() != 0) continue;
+    warped[at.own()] =
+        warp.WarpPoint(lattice.own[at.own()], LatticePoint(origin, voxel, at));
   }
   return warped;
 }
 
-void IntegrateLeaf(const internal::VoxelUpdater& updater,
-                   const WarpedLattice& warped,
-                   const internal::LeafBuffers& leaf) {
-  const auto at = [&](int x, int y, int z) -> const Eigen::Vector3f& {
-    return warped[(x * kLattice + y) * kLattice + z];
-  };
-  int offset = 0;
-  for (int x = 0; x < kLeafSize; ++x) {
-    const int cx = x / kCell;
-    const float fx = static_cast<float>(x % kCell) / kCell;
-    for (int y = 0; y < kLeafSize; ++y) {
-      const int cy = y / kCell;
-      const float fy = static_cast<float>(y % kCell) / kCell;
-      std::array<Eigen::Vector3f, kLattice> column;
-      for (int z = 0; z < kLattice; ++z) {
-        const Eigen::Vector3f low =
-            at(cx, cy, z) + fx * (at(cx + 1, cy, z) - at(cx, cy, z));
-        const Eigen::Vector3f high =
-            at(cx, cy + 1, z) +
-            fx * (at(cx + 1, cy + 1, z) - at(cx, cy + 1, z));
-        column[z] = low + fy * (high - low);
-      }
-      for (int z = 0; z < kLeafSize; ++z, ++offset) {
-        const int cz = z / kCell;
-        const float fz = static_cast<float>(z % kCell) / kCell;
-        updater.Update(column[cz] + fz * (column[cz + 1] - column[cz]),
-                       leaf.distance + offset, leaf.weight + offset,
-                       leaf.color + offset);
-      }
-    }
+/// All points of a block, given those that blocks own.
+WarpedLattice GatherLattice(const openvdb::Coord& origin, float voxel,
+                            const Owners& owners,
+                            const std::vector<OwnPoints>& own,
+                            const LeafLattice& lattice, const WarpField& warp) {
+  WarpedLattice warped;
+  for (int i = 0; i < kLatticePoints; ++i) {
+    const LatticeIndex at(i);
+    const int owner = owners[at.owner()];
+    if (owner >= 0) warped[i] = own[owner][at.own()];
   }
+  for (const auto& [i, skinning] : lattice.border) {
+    warped[i] =
+        warp.WarpPoint(skinning, LatticePoint(origin, voxel, LatticeIndex(i)));
+  }
+  return warped;
 }
 
-struct CoordHash {
-  std::size_t operator()(const openvdb::Coord& c) const {
-    return static_cast<std::size_t>(c.hash<24>());
+bool IntegrateLeaf(const internal::FusionImage& image,
+                   const WarpedLattice& warped,
+                   const internal::LeafBuffers& leaf) {
+  float lattice[kLatticePoints][3];
+  for (int i = 0; i < kLatticePoints; ++i) {
+    for (int axis = 0; axis < 3; ++axis) lattice[i][axis] = warped[i][axis];
   }
-};
+  const internal::FusionView& view = image.view();
+  if (!image.MayChange(internal::BoundInImage(view, lattice, kLatticePoints))) {
+    return false;
+  }
+  return internal::FuseWarpedLeaf(view, lattice, internal::ToFused(leaf));
+}
+
+/// The attached blocks that own the lattice of every block.
+std::vector<Owners> FindOwners(const std::vector<internal::LeafBuffers>& leaves,
+                               const std::vector<LeafLattice*>& lattices) {
+  std::vector<internal::LeafPlace> places;
+  places.reserve(leaves.size());
+  for (const internal::LeafBuffers& leaf : leaves) {
+    const openvdb::Coord& origin = leaf.origin;
+    places.push_back({origin.x() >> 3, origin.y() >> 3, origin.z() >> 3});
+  }
+  const internal::LeafTable table(places);
+  std::vector<Owners> owners(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
+    const auto [x, y, z] = places[i];
+    for (int k = 0; k < 8; ++k) {
+      const int owner =
+          table.Find(x + (k >> 2), y + ((k >> 1) & 1), z + (k & 1)) - 1;
+      owners[i][k] = owner >= 0 && lattices[owner]->attached ? owner : -1;
+    }
+  });
+  return owners;
+}
 
 }  // namespace
 
 struct WarpedIntegrator::Cache {
-  std::unordered_map<openvdb::Coord, LeafLattice, CoordHash> lattices;
+  std::unordered_map<openvdb::Coord, LeafLattice> lattices;
 };
 
 WarpedIntegrator::WarpedIntegrator() : cache_(std::make_unique<Cache>()) {}
@@ -127,10 +172,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
                                  TsdfVolume* volume) {
   const std::vector<internal::LeafBuffers> leaves =
       internal::CollectLeaves(volume);
-  const internal::VoxelUpdater updater{
-      observation, static_cast<float>(volume->options().truncation),
-      static_cast<float>(volume->options().max_weight),
-      static_cast<float>(volume->options().max_free_weight)};
+  const internal::FusionImage image(observation, volume->options());
   const float voxel = static_cast<float>(volume->options().voxel_size);
   std::vector<LeafLattice*> lattices;
   std::vector<std::size_t> missing;
@@ -140,16 +182,27 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
     if (is_new) missing.push_back(i);
   }
   tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
-    const std::size_t i = missing[m];
-    *lattices[i] =
-        SkinLeaf(leaves[i].origin, voxel, static_cast<float>(reach), index);
+    SkinOwn(leaves[missing[m]].origin, voxel, static_cast<float>(reach), index,
+            lattices[missing[m]]);
   });
+  const std::vector<Owners> owners = FindOwners(leaves, lattices);
+  tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
+    const std::size_t i = missing[m];
+    SkinBorder(leaves[i].origin, voxel, owners[i], index, lattices[i]);
+  });
+  std::vector<OwnPoints> own(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
+    own[i] = WarpOwn(leaves[i].origin, voxel, *lattices[i], warp);
+  });
+  std::vector<char> changed(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     if (!lattices[i]->attached) return;
-    IntegrateLeaf(updater,
-                  WarpLeaf(leaves[i].origin, voxel, *lattices[i], warp),
-                  leaves[i]);
+    changed[i] = IntegrateLeaf(image,
+                               GatherLattice(leaves[i].origin, voxel, owners[i],
+                                             own, *lattices[i], warp),
+                               leaves[i]);
   });
+  internal::RecordChanges(leaves, changed, volume);
 }
 
 }  // namespace splitfusion

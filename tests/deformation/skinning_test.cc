@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <set>
 
 #include "support/expect_input_error.h"
 #include "support/sample_graphs.h"
@@ -198,6 +200,61 @@ TEST(Skinning, OneByOneAndInParallelAreTheSame) {
     const Skinning one = index.Skin(mesh.vertices[i]);
     EXPECT_EQ(one.nodes, all[i].nodes);
     EXPECT_EQ(one.weights, all[i].weights);
+  }
+}
+
+/// Equation 3 written down over the nodes within two edges of the nearest.
+Skinning SkinByHand(const DeformationGraph& graph, int k,
+                    const Eigen::Vector3f& point) {
+  const auto squared = [&](int node) {
+    return (graph.positions[node].cast<float>() - point).squaredNorm();
+  };
+  const auto nearer = [&](int a, int b) {
+    return std::make_pair(squared(a), a) < std::make_pair(squared(b), b);
+  };
+  std::vector<int> all(graph.size());
+  std::iota(all.begin(), all.end(), 0);
+  const int nearest = *std::min_element(all.begin(), all.end(), nearer);
+  std::set<int> found = {nearest};
+  for (const int a : graph.neighbors[nearest]) {
+    found.insert(a);
+    found.insert(graph.neighbors[a].begin(), graph.neighbors[a].end());
+  }
+  std::vector<int> nodes(found.begin(), found.end());
+  std::sort(nodes.begin(), nodes.end(), nearer);
+  const float d_max = std::sqrt(squared(nodes[k]));
+  std::sort(nodes.begin(), nodes.begin() + k);
+  Skinning skinning;
+  for (int i = 0; i < k; ++i) {
+    const float closeness = 1 - std::sqrt(squared(nodes[i])) / d_max;
+    skinning.nodes[i] = nodes[i];
+    skinning.weights[i] = std::max(closeness * closeness, 1e-8f);
+  }
+  skinning.count = k;
+  float sum = 0;
+  for (int i = 0; i < k; ++i) sum += skinning.weights[i];
+  for (int i = 0; i < k; ++i) skinning.weights[i] /= sum;
+  return skinning;
+}
+
+TEST(Skinning, IsThatOfEquationThreeWhateverWasAskedBefore) {
+  const TriangleMesh mesh = SheetMesh(0.5, 0.4, 0.01, [](double x, double y) {
+    return Eigen::Vector3d(x, y, 1 + 0.1 * std::sin(9 * x) * std::cos(7 * y));
+  });
+  const DeformationGraph graph = CoverWithNodes(mesh, 0.04);
+  const SkinningIndex index(graph, 6);
+  int hint = -1;
+  for (std::size_t i = 0; i < mesh.vertices.size(); i += 3) {
+    const Eigen::Vector3f point =
+        mesh.vertices[i] + Eigen::Vector3f(0.003f, -0.002f, 0.01f * (i % 4));
+    const Skinning expected = SkinByHand(graph, 6, point);
+    for (const Skinning& skinning :
+         {index.Skin(point), index.Skin(point, &hint)}) {
+      EXPECT_EQ(skinning.count, expected.count);
+      EXPECT_EQ(skinning.nodes, expected.nodes);
+      EXPECT_EQ(skinning.weights, expected.weights);
+    }
+    EXPECT_EQ(hint, index.NearestNode(point, nullptr));
   }
 }
 

@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "splitfusion/lib/base/error.h"
-
+#include "splitfusion/lib/geometry/window_planes.h"
 namespace splitfusion {
 namespace {
 
@@ -80,6 +81,36 @@ TEST(DepthSigma, GrowsWithDistance) {
   EXPECT_NEAR(DepthSigma(0.4), 0.0012, 1e-9);
   EXPECT_LT(DepthSigma(1.0), DepthSigma(2.0));
   EXPECT_LT(DepthSigma(2.0f), DepthSigma(4.0f));
+}
+
+TEST(SumWindows, CountsThePixelsAtTheCentresDepth) {
+  // Depth 1 + 0.01 column, in rows of 20 pixels; gate 0.015: one column either
+  // side, of three rows.
+  constexpr int kRadius = 2, kStride = 20;
+  std::vector<float> depth(kStride * 5), inverse(kStride * 5);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    const std::size_t row = i / kStride;
+    depth[i] = row >= 1 && row <= 3 ? 1 + 0.01f * (i % kStride) : 0.0f;
+    inverse[i] = 1 / depth[i];
+  }
+  std::vector<float> gate(kWindowPixels, 0.015f);
+  gate[3] = 0.005f;  // Only its own column.
+  WindowSums sums[kWindowPixels];
+  SumWindows({depth.data(), inverse.data(), kStride, kRadius, 0.5f, 0.25f},
+             &depth[2 * kStride + kRadius], gate.data(), sums);
+  for (int i = 0; i < kWindowPixels; ++i) {
+    const int columns = i == 3 ? 1 : 3;
+    const float center = 1 / (1 + 0.01f * (i + kRadius));
+    EXPECT_EQ(sums[i].count, 3 * columns);
+    EXPECT_EQ(sums[i].x, 0);
+    EXPECT_EQ(sums[i].y, 0);
+    EXPECT_EQ(sums[i].xx, i == 3 ? 0 : 6 * 0.25f);
+    EXPECT_EQ(sums[i].yy, 2 * columns * 0.0625f);
+    EXPECT_EQ(sums[i].xy, 0);
+    EXPECT_NEAR(sums[i].z, 3 * columns * center, 1e-3);
+    EXPECT_NEAR(sums[i].yz, 0, 1e-6);
+    EXPECT_TRUE(i == 3 ? sums[i].xz == 0 : sums[i].xz < 0);
+  }
 }
 
 }  // namespace

@@ -165,5 +165,26 @@ TEST(RayCastOptions, RefuseValuesOutOfRange) {
       "ray_min_weight = -1: expected >= 0");
 }
 
+TEST(RayCaster, DoesNotDependOnTheNumberOfThreads) {
+  const TsdfVolume volume = SphereVolume(Rigid3d::Identity());
+  const auto cast = [&] {
+    return RayCast(volume, Rigid3d::Identity(), SmallCamera(),
+                   RayCastOptions());
+  };
+  const ModelMap parallel = cast();
+  const tbb::global_control one_thread(
+      tbb::global_control::max_allowed_parallelism, 1);
+  const ModelMap serial = cast();
+  EXPECT_EQ(cv::norm(parallel.points, serial.points, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(parallel.normals, serial.normals, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(parallel.color, serial.color, cv::NORM_INF), 0);
+}
+
+TEST(RayCaster, SeesNothingInAnEmptyVolume) {
+  const ModelMap map = RayCast(TsdfVolume(TsdfOptions()), Rigid3d::Identity(),
+                               SmallCamera(), RayCastOptions());
+  EXPECT_EQ(cv::countNonZero(map.points.reshape(1)), 0);
+}
+
 }  // namespace
 }  // namespace splitfusion

@@ -3,8 +3,10 @@
 
 #include <openvdb/openvdb.h>
 
+#include <unordered_map>
 #include <vector>
 
+#include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
 namespace splitfusion {
@@ -14,6 +16,12 @@ struct TsdfVolume::Grids {
   openvdb::FloatGrid::Ptr distance;
   openvdb::FloatGrid::Ptr weight;
   openvdb::Vec3SGrid::Ptr color;
+
+  /// When a block, by its origin, last changed in a way that its mesh may show:
+  /// the `time` of that integration.
+  std::unordered_map<openvdb::Coord, int> changed;
+  /// Integrations so far.
+  int time = 0;
 
   /// Makes sure that the block with this origin exists in all grids.
   void Touch(const openvdb::Coord& origin);
@@ -32,21 +40,26 @@ struct LeafBuffers {
   openvdb::Vec3s* color = nullptr;
 };
 
+/// The same, to be read.
+struct ConstLeafBuffers {
+  openvdb::Coord origin;
+  const float* distance = nullptr;
+  const float* weight = nullptr;
+  const openvdb::Vec3s* color = nullptr;
+};
+
 /// Buffers of all blocks, in the tree's order.
 std::vector<LeafBuffers> CollectLeaves(TsdfVolume* volume);
 
-/// Folds one measured voxel into the running mean.
-/// `sdf`: distance along the ray, not yet truncated, metres.
-struct VoxelUpdater {
-  const DepthObservation& observation;
-  float truncation;
-  float max_weight;
-  float max_free_weight;
+/// Buffers of all blocks, in the tree's order.
+std::vector<ConstLeafBuffers> CollectLeaves(const TsdfVolume& volume);
 
-  /// Updates the voxel whose centre is at `p` in the camera frame.
-  void Update(const Eigen::Vector3f& p, float* distance, float* weight,
-              openvdb::Vec3s* color) const;
-};
+/// The same for the loops that are free of OpenVDB.
+FusedLeaf ToFused(const LeafBuffers& leaf);
+
+/// Notes which blocks an integration changed, see TsdfVolume::Grids::changed.
+void RecordChanges(const std::vector<LeafBuffers>& leaves,
+                   const std::vector<char>& changed, TsdfVolume* volume);
 
 }  // namespace internal
 }  // namespace splitfusion

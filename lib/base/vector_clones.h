@@ -1,0 +1,18 @@
+#ifndef SPLITFUSION_LIB_BASE_VECTOR_CLONES_H_
+#define SPLITFUSION_LIB_BASE_VECTOR_CLONES_H_
+
+/// Before a function: it is compiled for wide vectors as well, and the
+/// processor's own version is taken when the program starts. Only in files free
+/// of Eigen, whose types change with the instruction set. No version fuses
+/// multiplications with additions, so that all give the same numbers. The files
+/// begin with `#pragma GCC optimize("no-trapping-math")`: else the compiler
+/// keeps branches in loops for fear of a trap.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define SPLITFUSION_VECTOR_CLONES \
+  __attribute__((target_clones("avx2", "default")))
+#else
+#define SPLITFUSION_VECTOR_CLONES
+#endif
+
+#endif  // SPLITFUSION_LIB_BASE_VECTOR_CLONES_H_

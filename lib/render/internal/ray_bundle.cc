@@ -1,0 +1,91 @@
+#pragma GCC optimize("no-trapping-math")
+
+#include "splitfusion/lib/render/internal/ray_bundle.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include "splitfusion/lib/base/vector_clones.h"
+
+namespace splitfusion {
+namespace internal {
+namespace {
+
+constexpr int kRays = RayBundle::kRays;
+
+/// Voxels that rays are in.
+struct Places {
+  float x[kRays], y[kRays], z[kRays];  // Index space.
+  std::int32_t i[kRays], j[kRays], k[kRays];
+};
+
+/// The nearest voxel; std::floor is a function call for the baseline processor.
+inline std::int32_t Nearest(float x) {
+  const float shifted = x + 0.5f;
+  const auto truncated = static_cast<std::int32_t>(shifted);
+  return truncated - (static_cast<float>(truncated) > shifted ? 1 : 0);
+}
+
+/// Advance in z-depth to where a ray leaves its block along one axis.
+inline float ToWall(float place, std::int32_t voxel, float step) {
+  const float low = static_cast<float>(voxel & ~7) - 0.5f;
+  const float wall = step > 0 ? low + 8.0f : low;
+  const float advance = (wall - place) / step;
+  return std::abs(step) > 1e-9f ? advance : 1e9f;
+}
+
+inline float Lower(float a, float b) { return b < a ? b : a; }
+
+}  // namespace
+
+SPLITFUSION_VECTOR_CLONES
+bool StepRays(const RayVolume& volume, RayBundle* rays) {
+  Places at;
+  for (int r = 0; r < kRays; ++r) {
+    at.x[r] = volume.origin[0] + rays->t[r] * rays->step_x[r];
+    at.y[r] = volume.origin[1] + rays->t[r] * rays->step_y[r];
+    at.z[r] = volume.origin[2] + rays->t[r] * rays->step_z[r];
+    at.i[r] = Nearest(at.x[r]);
+    at.j[r] = Nearest(at.y[r]);
+    at.k[r] = Nearest(at.z[r]);
+  }
+  float distance[kRays], weight[kRays];
+  for (int r = 0; r < kRays; ++r) {
+    const std::int32_t leaf =
+        volume.table.Find(at.i[r] >> 3, at.j[r] >> 3, at.k[r] >> 3);
+    const std::int32_t offset =
+        (at.i[r] & 7) << 6 | (at.j[r] & 7) << 3 | (at.k[r] & 7);
+    distance[r] = volume.distance[leaf][offset];
+    weight[r] = volume.weight[leaf][offset];
+  }
+  int any_stopped = 0;
+  for (int r = 0; r < kRays; ++r) {
+    const float t = rays->t[r];
+    const bool at_rest = !(t < rays->t_end[r]);
+    const bool unseen = weight[r] < volume.min_weight;
+    const bool positive = distance[r] > 0;
+    const bool crosses =
+        !at_rest & !unseen & (rays->previous[r] > 0) & !positive;
+    rays->crossing[r] = crosses ? t : 0.0f;
+    // Behind a crossing that could not be refined it is tried again.
+    const float seen = positive ? distance[r] : rays->previous[r];
+    rays->previous[r] = unseen ? -1.0f : seen;
+    // Distances are along the ray to within the slope: half is safe.
+    const float half = 0.5f * distance[r] / volume.voxel_size;
+    const float free = positive & (weight[r] > 0) ? half : 0.0f;
+    const float walked = t + rays->voxel_step[r] * (free < 0.7f ? 0.7f : free);
+    float leave = Lower(1e9f, ToWall(at.x[r], at.i[r], rays->step_x[r]));
+    leave = Lower(leave, ToWall(at.y[r], at.j[r], rays->step_y[r]));
+    leave = Lower(leave, ToWall(at.z[r], at.k[r], rays->step_z[r]));
+    const float skipped = t + (leave < 0 ? 0.0f : leave) + 1e-4f;
+    const float next = weight[r] < 0 ? skipped : walked;
+    const bool ends = !at_rest & !(next < rays->t_end[r]);
+    rays->stopped[r] = crosses | ends ? 1 : 0;
+    any_stopped |= rays->stopped[r];
+    rays->t[r] = at_rest ? t : next;
+  }
+  return any_stopped != 0;
+}
+
+}  // namespace internal
+}  // namespace splitfusion

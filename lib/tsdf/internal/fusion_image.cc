@@ -1,0 +1,102 @@
+#include "splitfusion/lib/tsdf/internal/fusion_image.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "splitfusion/lib/geometry/point_map.h"
+
+namespace splitfusion {
+namespace internal {
+namespace {
+
+/// A voxel is clearly empty where it is nearer than the measured depth by the
+/// truncation and as many sigma of the depth.
+constexpr float kFreeSpaceSigmas = 3.0f;
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+constexpr FusionPixel kNoPixel = {0, 0, kNever, kNever};
+
+}  // namespace
+
+FusionImage::FusionImage(const DepthObservation& observation,
+                         const TsdfOptions& options)
+    : truncation_(static_cast<float>(options.truncation)),
+      columns_((observation.camera.width + kTile - 1) / kTile),
+      rows_((observation.camera.height + kTile - 1) / kTile) {
+  const PinholeCamera& camera = observation.camera;
+  pixels_.resize(static_cast<std::size_t>(camera.width) * camera.height + 1);
+  pixels_.back() = kNoPixel;
+  reach_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
+  color_ = observation.color.isContinuous() ? observation.color
+                                            : observation.color.clone();
+  view_ = {pixels_.data(),
+           color_.ptr<std::uint8_t>(0),
+           camera.width,
+           camera.height,
+           static_cast<float>(camera.fx),
+           static_cast<float>(camera.fy),
+           static_cast<float>(camera.cx),
+           static_cast<float>(camera.cy),
+           truncation_,
+           static_cast<float>(options.max_weight),
+           static_cast<float>(options.max_free_weight)};
+  tbb::parallel_for(0, rows_, [&](int tile_row) {
+    const int end = std::min(camera.height, (tile_row + 1) * kTile);
+    for (int v = tile_row * kTile; v < end; ++v) FillRow(observation, v);
+  });
+}
+
+void FusionImage::FillRow(const DepthObservation& observation, int v) {
+  const float* depth = observation.depth[v];
+  const float* weight = observation.weight[v];
+  const std::uint8_t* role = observation.role[v];
+  FusionPixel* pixels = &pixels_[static_cast<std::size_t>(v) * view_.width];
+  float* reach = &reach_[static_cast<std::size_t>(v / kTile) * columns_];
+  const float beyond_truncation = std::nextafter(truncation_, kNever);
+  for (int u = 0; u < view_.width; ++u) {
+    const auto pixel_role = static_cast<PixelRole>(role[u]);
+    if (pixel_role == PixelRole::kNone || !(depth[u] > 0)) {
+      pixels[u] = kNoPixel;
+      continue;
+    }
+    pixels[u] = {
+        depth[u], weight[u],
+        pixel_role == PixelRole::kWrite ? -truncation_ : beyond_truncation,
+        truncation_ + kFreeSpaceSigmas * DepthSigma(depth[u])};
+    reach[u / kTile] =
+        std::max(reach[u / kTile], depth[u] - pixels[u].change_from);
+  }
+}
+
+bool FusionImage::MayChange(const ImageBox& box) const {
+  if (!box.in_front) return true;
+  constexpr float kPixelMargin = 1;      // Rounding to pixels, and of floats.
+  constexpr float kDepthMargin = 1e-3f;  // Metres; rounding.
+  const float u_low = box.u_low - kPixelMargin;
+  const float v_low = box.v_low - kPixelMargin;
+  const float u_high = box.u_high + kPixelMargin;
+  const float v_high = box.v_high + kPixelMargin;
+  if (!(u_high >= 0 && v_high >= 0 && u_low < static_cast<float>(view_.width) &&
+        v_low < static_cast<float>(view_.height))) {
+    return false;
+  }
+  const auto tile = [](float pixel, int count) {
+    const float clamped =
+        std::clamp(pixel, 0.0f, static_cast<float>(count * kTile - 1));
+    return static_cast<int>(clamped) / kTile;
+  };
+  const int u_end = tile(u_high, columns_);
+  const int v_end = tile(v_high, rows_);
+  for (int v = tile(v_low, rows_); v <= v_end; ++v) {
+    for (int u = tile(u_low, columns_); u <= u_end; ++u) {
+      if (box.z_low < reach_[v * columns_ + u] + kDepthMargin) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace internal
+}  // namespace splitfusion

@@ -1,0 +1,47 @@
+#ifndef SPLITFUSION_LIB_TSDF_INTERNAL_FUSION_IMAGE_H_
+#define SPLITFUSION_LIB_TSDF_INTERNAL_FUSION_IMAGE_H_
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
+#include "splitfusion/lib/tsdf/tsdf_volume.h"
+
+namespace splitfusion {
+namespace internal {
+
+/// An observation as voxels ask for it: one small record a pixel, and for tiles
+/// of the image how far from the camera it can change anything.
+class FusionImage {
+ public:
+  /// Keeps hold of the observation's colour, not of its other images.
+  FusionImage(const DepthObservation& observation, const TsdfOptions& options);
+  /// The view points into it.
+  FusionImage(const FusionImage&) = delete;
+  /// The view points into it.
+  FusionImage& operator=(const FusionImage&) = delete;
+
+  /// For FuseRigidLeaf() and FuseWarpedLeaf().
+  const FusionView& view() const { return view_; }
+
+  /// Whether any voxel within a box could be changed. Says yes where it is not
+  /// sure.
+  bool MayChange(const ImageBox& box) const;
+
+ private:
+  static constexpr int kTile = 16;  // Pixels.
+
+  void FillRow(const DepthObservation& observation, int v);
+
+  float truncation_;
+  int columns_, rows_;  // Of tiles.
+  std::vector<FusionPixel> pixels_;
+  std::vector<float> reach_;  // Per tile: farthest z-depth of any change.
+  cv::Mat color_;
+  FusionView view_;
+};
+
+}  // namespace internal
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_TSDF_INTERNAL_FUSION_IMAGE_H_

@@ -1,0 +1,153 @@
+#include "splitfusion/lib/tsdf/internal/padded_leaf.h"
+
+namespace splitfusion {
+namespace internal {
+namespace {
+
+std::vector<LeafPlace> Places(const std::vector<ConstLeafBuffers>& leaves) {
+  std::vector<LeafPlace> places;
+  places.reserve(leaves.size());
+  for (const ConstLeafBuffers& leaf : leaves) {
+    const openvdb::Coord& o = leaf.origin;
+    places.push_back({o.x() >> 3, o.y() >> 3, o.z() >> 3});
+  }
+  return places;
+}
+
+/// A point of index space between voxels: the lowest of the eight, counted from
+/// a block's origin, and how far it is on.
+struct Cell {
+  Cell(const openvdb::Vec3d& p, const openvdb::Coord& origin) {
+    for (int axis = 0; axis < 3; ++axis) {
+      // std::floor is a function call for the baseline processor.
+      const int truncated = static_cast<int>(p[axis]);
+      const int floor = truncated - (truncated > p[axis] ? 1 : 0);
+      low[axis] = floor - origin[axis];
+      part[axis] = p[axis] - floor;
+    }
+  }
+  int low[3];
+  double part[3];
+};
+
+/// Between a and b, with OpenVDB's roundings.
+float Mix(float a, float b, double weight) {
+  return a + static_cast<float>((b - a) * weight);
+}
+
+/// Trilinear value; read(i, j, k) is a corner's, i, j, k = 0 or 1.
+template <typename Read>
+float Trilinear(const Cell& cell, const Read& read) {
+  float by_x[2];
+  for (int i = 0; i < 2; ++i) {
+    by_x[i] =
+        Mix(Mix(read(i, 0, 0), read(i, 0, 1), cell.part[2]),
+            Mix(read(i, 1, 0), read(i, 1, 1), cell.part[2]), cell.part[1]);
+  }
+  return Mix(by_x[0], by_x[1], cell.part[0]);
+}
+
+}  // namespace
+
+LeafLookup::LeafLookup(const TsdfVolume& volume)
+    : leaves_(CollectLeaves(volume)),
+      table_(Places(leaves_)),
+      background_(volume.grids().distance->background()) {}
+
+std::vector<openvdb::Coord> LeafLookup::Origins() const {
+  std::vector<openvdb::Coord> origins;
+  origins.reserve(leaves_.size());
+  for (const ConstLeafBuffers& leaf : leaves_) origins.push_back(leaf.origin);
+  return origins;
+}
+
+PaddedLeaf::PaddedLeaf(const LeafLookup& lookup, const openvdb::Coord& origin)
+    : origin_(origin) {
+  for (int i = 0; i < 27; ++i) {
+    leaves_[i] = lookup.Find(origin.offsetBy(kLeafSize * (i / 9 - 1),
+                                             kLeafSize * (i / 3 % 3 - 1),
+                                             kLeafSize * (i % 3 - 1)));
+  }
+  CopyRows(
+      [&](const ConstLeafBuffers* leaf, int offset) {
+        return leaf == nullptr ? lookup.background() : leaf->distance[offset];
+      },
+      &distance_);
+}
+
+template <typename Source, typename Target>
+void PaddedLeaf::CopyRows(const Source& source, Target* target) const {
+  for (int x = -1; x < kSide - 1; ++x) {
+    for (int y = -1; y < kSide - 1; ++y) {
+      const int row = (x & 7) << 6 | (y & 7) << 3;
+      const ConstLeafBuffers* const* leaves = &leaves_[Neighbor(x, y, -1)];
+      auto* to = &(*target)[Index(x, y, -1)];
+      to[0] = source(leaves[0], row + 7);
+      for (int z = 0; z < kLeafSize; ++z) {
+        to[z + 1] = source(leaves[1], row + z);
+      }
+      to[kLeafSize + 1] = source(leaves[2], row);
+      to[kLeafSize + 2] = source(leaves[2], row + 1);
+    }
+  }
+}
+
+void PaddedLeaf::LoadObserved(float min_weight) {
+  CopyRows(
+      [&](const ConstLeafBuffers* leaf, int offset) -> char {
+        return (leaf == nullptr ? 0.0f : leaf->weight[offset]) >= min_weight;
+      },
+      &observed_);
+}
+
+std::uint32_t PaddedLeaf::Inside(int x, int y) const {
+  const float* row = &distance_[Index(x, y, -1)];
+  std::uint32_t bits = 0;
+  for (int z = 0; z < kSide; ++z) bits |= (row[z] < 0 ? 1u : 0u) << z;
+  return bits;
+}
+
+float PaddedLeaf::Distance(const openvdb::Vec3d& p) const {
+  const Cell cell(p, origin_);
+  const float* low = &distance_[Index(cell.low[0], cell.low[1], cell.low[2])];
+  return Trilinear(cell, [&](int i, int j, int k) {
+    return low[(i * kSide + j) * kSide + k];
+  });
+}
+
+bool PaddedLeaf::Observed(const openvdb::Vec3d& p) const {
+  const Cell cell(p, origin_);
+  const char* low = &observed_[Index(cell.low[0], cell.low[1], cell.low[2])];
+  char all = 1;
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      const char* row = low + (i * kSide + j) * kSide;
+      all &= row[0] & row[1];
+    }
+  }
+  return all != 0;
+}
+
+openvdb::Vec3s PaddedLeaf::Color(const openvdb::Vec3d& p) const {
+  const Cell cell(p, origin_);
+  openvdb::Vec3s corners[8];
+  for (int corner = 0; corner < 8; ++corner) {
+    const int x = cell.low[0] + (corner >> 2);
+    const int y = cell.low[1] + ((corner >> 1) & 1);
+    const int z = cell.low[2] + (corner & 1);
+    const ConstLeafBuffers* leaf = leaves_[Neighbor(x, y, z)];
+    corners[corner] = leaf == nullptr
+                          ? openvdb::Vec3s(0, 0, 0)
+                          : leaf->color[(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
+  }
+  openvdb::Vec3s color;
+  for (int channel = 0; channel < 3; ++channel) {
+    color[channel] = Trilinear(cell, [&](int i, int j, int k) {
+      return corners[i << 2 | j << 1 | k][channel];
+    });
+  }
+  return color;
+}
+
+}  // namespace internal
+}  // namespace splitfusion

@@ -1,0 +1,71 @@
+#ifndef SPLITFUSION_LIB_TSDF_INTERNAL_VOXEL_FUSION_H_
+#define SPLITFUSION_LIB_TSDF_INTERNAL_VOXEL_FUSION_H_
+
+#include <cstdint>
+
+namespace splitfusion {
+namespace internal {
+
+/// What one pixel does to the voxels on its ray. A voxel is changed where its
+/// distance along the ray, not yet truncated, is at least `change_from`; it is
+/// empty for sure where the distance is above `free_above`. Metres.
+struct FusionPixel {
+  float depth;
+  float weight;
+  float change_from;
+  float free_above;
+};
+
+/// An observation, for loops that are free of Eigen and OpenCV.
+struct FusionView {
+  const FusionPixel* pixels;  ///< Row by row; one more at the end changes none.
+  const std::uint8_t* color;  ///< Row by row, BGR.
+  int width, height;
+  float fx, fy, cx, cy;
+  float truncation;  ///< Metres.
+  float max_weight, max_free_weight;
+};
+
+/// Buffers of the block that is fused into; `color`: red, green and blue of
+/// every voxel, 0..1.
+struct FusedLeaf {
+  float* distance;
+  float* weight;
+  float* color;
+};
+
+/// No mesh asks whether a voxel has been observed more than this.
+constexpr float kFirmWeight = 8;
+
+/// Fuses into a block whose voxel (x, y, z) is at base + x steps[0] + y
+/// steps[1]
+/// + z steps[2] of the camera frame, metres. Returns whether a mesh may show
+/// it: a distance, a colour, or a weight below kFirmWeight is another one.
+bool FuseRigidLeaf(const FusionView& view, const float base[3],
+                   const float steps[3][3], const FusedLeaf& leaf);
+
+/// Points of a block that are warped: every fourth voxel, 3 x 3 x 3.
+constexpr int kLatticePoints = 27;
+
+/// Fuses into a block whose every fourth voxel is at `lattice` (camera frame,
+/// metres; z varies fastest), and whose others are interpolated. Returns the
+/// same.
+bool FuseWarpedLeaf(const FusionView& view,
+                    const float lattice[kLatticePoints][3],
+                    const FusedLeaf& leaf);
+
+/// Bounding box of points in depth and in the image.
+struct ImageBox {
+  bool in_front = false;  ///< All points are well in front of the camera.
+  float z_low = 0;        ///< Metres.
+  float u_low = 0, u_high = 0, v_low = 0, v_high = 0;  ///< Pixels.
+};
+
+/// Box around `count` points of the camera frame.
+ImageBox BoundInImage(const FusionView& view, const float (*points)[3],
+                      int count);
+
+}  // namespace internal
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_TSDF_INTERNAL_VOXEL_FUSION_H_
