@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 namespace splitfusion {
@@ -272,6 +273,14 @@ SceneRendering RenderScene(const SurfaceMap& surfaces,
                  });
   }
   return scene;
+}
+
+bool AllDrawn(const SurfaceMap& surfaces, const MeshRendering& rendering) {
+  return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& entry) {
+    const Surface& surface = *entry.second;
+    return surface.is_ray_cast() || surface.dormant() ||
+           rendering.first_triangle.count(surface.id()) > 0;
+  });
 }
 
 }  // namespace splitfusion

@@ -40,6 +40,10 @@ struct MeshRendering {
 MeshRendering RenderMeshes(const SurfaceMap& surfaces,
                            const PinholeCamera& camera);
 
+/// Whether every surface that is drawn from its mesh, and not dormant, is in
+/// the rendering.
+bool AllDrawn(const SurfaceMap& surfaces, const MeshRendering& rendering);
+
 /// Renders one surface as if no other hid it.
 MeshRendering RenderAlone(const Surface& surface, const PinholeCamera& camera);
 

@@ -1,5 +1,7 @@
 #include "splitfusion/pipelines/split_fusion.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -9,18 +11,6 @@
 #include "splitfusion/pipelines/exposure.h"
 
 namespace splitfusion {
-namespace {
-
-/// Whether every surface that is drawn from its mesh is in the rendering.
-bool AllDrawn(const SurfaceMap& surfaces, const MeshRendering& rendering) {
-  return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& entry) {
-    const Surface& surface = *entry.second;
-    return surface.is_ray_cast() || surface.dormant() ||
-           rendering.first_triangle.count(surface.id()) > 0;
-  });
-}
-
-}  // namespace
 
 SplitFusion::SplitFusion(const PinholeCamera& camera,
                          const PipelineOptions& options,
@@ -123,22 +113,39 @@ void SplitFusion::TrackBackground(FrameReport* report) {
 }
 
 void SplitFusion::TrackObjects(FrameReport* report) {
+  std::vector<SurfaceReport> objects = LookAtObjects();
+  tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
+    SurfaceReport& object = objects[i];
+    if (object.state.empty() && hidden_.count(object.id) == 0) {
+      TrackObject(surfaces_.at(object.id).get(), &object);
+    }
+  });
+  // One after the other: who is found elsewhere changes the rendering.
+  for (SurfaceReport& object : objects) {
+    if (object.state.empty() || object.state == "lost") {
+      TrackWhereSeen(surfaces_.at(object.id).get(), &object);
+    }
+    report->surfaces.push_back(std::move(object));
+  }
+}
+
+std::vector<SurfaceReport> SplitFusion::LookAtObjects() {
   const std::map<int, int> pixels = PixelsOfSurfaces(live_);
+  std::vector<SurfaceReport> objects;
   for (const auto& [id, surface] : surfaces_) {
     if (id == 0) continue;
-    SurfaceReport surface_report;
-    surface_report.id = id;
+    SurfaceReport object;
+    object.id = id;
     const auto seen = pixels.find(id);
-    surface_report.pixels = seen == pixels.end() ? 0 : seen->second;
-    if (IsHidden(&surface_report)) {
-      surface_report.state = "hidden";
-    } else if (surface_report.pixels < options_.min_tracked_pixels) {
-      surface_report.state = "unseen";
-    } else {
-      TrackOrFind(surface.get(), &surface_report);
+    object.pixels = seen == pixels.end() ? 0 : seen->second;
+    if (IsHidden(&object)) {
+      object.state = "hidden";
+    } else if (object.pixels < options_.min_tracked_pixels) {
+      object.state = "unseen";
     }
-    report->surfaces.push_back(std::move(surface_report));
+    objects.push_back(std::move(object));
   }
+  return objects;
 }
 
 bool SplitFusion::IsHidden(SurfaceReport* report) {
@@ -182,41 +189,32 @@ void SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
                  still, surface->mutable_graph(), report);
 }
 
-void SplitFusion::TrackOrFind(Surface* surface, SurfaceReport* report) {
-  if (hidden_.count(report->id) == 0) {
-    TrackObject(surface, report);
-    if (report->state == "lost") TrackWhereSeen(surface, report);
-    return;
-  }
-  TrackWhereSeen(surface, report);
-  if (report->state == "tracked") {
-    hidden_.erase(report->id);
-  } else {
-    report->state = "hidden";  // Too little to know where it is.
-  }
-}
-
 void SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
-  const bool lost = report->state == "lost";
-  if (!PlaceWhereSeen(surface, report) && lost) return;
+  const bool was_hidden = hidden_.count(report->id) > 0;
+  if (!PlaceWhereSeen(surface, report) && !was_hidden) return;
   TrackObject(surface, report);
-  if (report->state != "lost") return;
+  if (report->state == "tracked") {
+    hidden_.erase(report->id);
+    return;
+  }
+  if (was_hidden) report->state = "hidden";  // Too little to know where it is.
   *surface->mutable_graph() = before;
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
 }
 
 void SplitFusion::Fuse(FrameReport* report) {
-  for (SurfaceReport& tracked : report->surfaces) {
-    if (tracked.state != "tracked") continue;
-    Surface& surface = *surfaces_.at(tracked.id);
+  std::vector<SurfaceReport>& reports = report->surfaces;
+  tbb::parallel_for(std::size_t{0}, reports.size(), [&](std::size_t i) {
+    if (reports[i].state != "tracked") return;
+    Surface& surface = *surfaces_.at(reports[i].id);
     Stopwatch stopwatch;
     surface.Fuse(live_);
-    tracked.fuse_seconds = stopwatch.Restart();
+    reports[i].fuse_seconds = stopwatch.Restart();
     if (!surface.is_ray_cast()) surface.UpdateMesh();
-    tracked.mesh_seconds = stopwatch.Restart();
-  }
+    reports[i].mesh_seconds = stopwatch.Restart();
+  });
 }
 
 void SplitFusion::RestartLostSurfaces(FrameReport* report) {

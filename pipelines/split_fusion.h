@@ -52,7 +52,11 @@ class SplitFusion {
   void PredictMotions();
   void Split(const Frame& frame, FrameReport* report);
   void TrackBackground(FrameReport* report);
+  /// Every object on its own and at the same time.
   void TrackObjects(FrameReport* report);
+  /// Reports of all objects, so far of those that are not to be tracked:
+  /// hidden or unseen.
+  std::vector<SurfaceReport> LookAtObjects();
   /// Whether so little of a surface is in view that its motion would be that
   /// of a strip.
   bool IsHidden(SurfaceReport* report);
@@ -60,10 +64,8 @@ class SplitFusion {
   /// found.
   bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
   void TrackObject(Surface* surface, SurfaceReport* report);
-  /// Tracks a surface; if it is lost or was hidden, from where it is seen.
-  void TrackOrFind(Surface* surface, SurfaceReport* report);
-  /// Tracks from where the surface's live pixels are; leaves it where it was
-  /// if that fails.
+  /// Tracks a surface that is lost or was hidden from where its live pixels
+  /// are; leaves it where it was if that fails.
   void TrackWhereSeen(Surface* surface, SurfaceReport* report);
   void Fuse(FrameReport* report);
   void FollowInstances(FrameReport* report);
