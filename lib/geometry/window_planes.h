@@ -6,10 +6,15 @@ namespace splitfusion {
 /// Sums over the pixels around one, of those at about its depth: x, y relative
 /// to the pixel in normalised image coordinates, z the inverse depth.
 struct WindowSums {
-  float x = 0, y = 0, z = 0;     ///< Of the values.
-  float xx = 0, xy = 0, yy = 0;  ///< Of their products.
-  float xz = 0, yz = 0;          ///< Of their products.
-  float count = 0;               ///< Pixels that count.
+  float x = 0;      ///< Of x.
+  float y = 0;      ///< Of y.
+  float z = 0;      ///< Of z.
+  float xx = 0;     ///< Of x x.
+  float xy = 0;     ///< Of x y.
+  float yy = 0;     ///< Of y y.
+  float xz = 0;     ///< Of x z.
+  float yz = 0;     ///< Of y z.
+  float count = 0;  ///< Pixels that count.
 };
 
 /// Depth and inverse depth of the rows of a window, one below the other.

@@ -72,37 +72,53 @@ SPLITFUSION_INLINE bool BlendColor(const std::uint8_t* bgr, float blend,
   return changed;
 }
 
+/// The records of eight pixels, field by field.
+struct PixelRow {
+  Lanes depth, weight, change_from, free_above;
+};
+
+/// Reads eight records of four floats and turns them round.
+SPLITFUSION_INLINE void Gather(const FusionView& view,
+                               const std::int32_t pixel[kSize], PixelRow* row) {
+  static_assert(sizeof(FusionPixel) == 4 * sizeof(float));
+  using Record = float __attribute__((vector_size(sizeof(FusionPixel))));
+  Lanes pair[4];  // Pixels i and i + 4.
+  for (int i = 0; i < 4; ++i) {
+    Record one, other;
+    std::memcpy(&one, view.pixels + pixel[i], sizeof(one));
+    std::memcpy(&other, view.pixels + pixel[i + 4], sizeof(other));
+    pair[i] = __builtin_shufflevector(one, other, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  const Flags low = {0, 8, 1, 9, 4, 12, 5, 13};
+  const Flags high = {2, 10, 3, 11, 6, 14, 7, 15};
+  const Flags first = {0, 1, 8, 9, 4, 5, 12, 13};
+  const Flags second = {2, 3, 10, 11, 6, 7, 14, 15};
+  const Lanes low01 = __builtin_shuffle(pair[0], pair[1], low);
+  const Lanes low23 = __builtin_shuffle(pair[2], pair[3], low);
+  const Lanes high01 = __builtin_shuffle(pair[0], pair[1], high);
+  const Lanes high23 = __builtin_shuffle(pair[2], pair[3], high);
+  row->depth = __builtin_shuffle(low01, low23, first);
+  row->weight = __builtin_shuffle(low01, low23, second);
+  row->change_from = __builtin_shuffle(high01, high23, first);
+  row->free_above = __builtin_shuffle(high01, high23, second);
+}
+
 /// Fuses into eight voxels in a row, given their pixels and depths; returns
 /// whether a mesh may show it.
 SPLITFUSION_INLINE bool FuseRow(const FusionView& view,
-                                const std::int32_t pixel[kSize],
-                                const float z_row[kSize],
+                                const std::int32_t pixel[kSize], const Lanes& z,
                                 const FusedLeaf& leaf) {
-  float depths[kSize], from[kSize];
-  for (int i = 0; i < kSize; ++i) {
-    depths[i] = view.pixels[pixel[i]].depth;
-    from[i] = view.pixels[pixel[i]].change_from;
-  }
-  Lanes depth, change_from, z;
-  Load(depths, &depth);
-  Load(from, &change_from);
-  Load(z_row, &z);
-  const Lanes sdf = depth - z;
-  Flags changes = sdf >= change_from;
+  PixelRow row;
+  Gather(view, pixel, &row);
+  const Lanes sdf = row.depth - z;
+  Flags changes = sdf >= row.change_from;
   if (!Any(changes)) return false;
-  float weights[kSize], above[kSize];
-  for (int i = 0; i < kSize; ++i) {
-    weights[i] = view.pixels[pixel[i]].weight;
-    above[i] = view.pixels[pixel[i]].free_above;
-  }
-  Lanes confidence, free_above, old_distance, old_weight;
-  Load(weights, &confidence);
-  Load(above, &free_above);
+  Lanes old_distance, old_weight;
   Load(leaf.distance, &old_distance);
   Load(leaf.weight, &old_weight);
   const Lanes truncation = Lanes{} + view.truncation;
-  const Flags free_space = sdf > free_above;
-  confidence = free_space ? Lanes{} + kFreeSpaceWeight : confidence;
+  const Flags free_space = sdf > row.free_above;
+  const Lanes confidence = free_space ? Lanes{} + kFreeSpaceWeight : row.weight;
   const Lanes sum = old_weight + confidence;
   changes &= sum > 0;
   const Lanes blend = confidence / sum;
@@ -119,8 +135,8 @@ SPLITFUSION_INLINE bool FuseRow(const FusionView& view,
   const Lanes lower = weight < old_weight ? weight : old_weight;
   bool changed = Any((distance != old_distance) |
                      ((weight != old_weight) & (lower < kFirmWeight)));
-  const Flags colored =
-      changes & (change_from < 0) & (sdf < truncation) & (sdf > -truncation);
+  const Flags colored = changes & (row.change_from < 0) & (sdf < truncation) &
+                        (sdf > -truncation);
   const bool any_colored = Any(colored);
   for (int i = 0; i < kSize && any_colored; ++i) {
     if (colored[i] == 0) continue;
@@ -189,11 +205,10 @@ bool FuseRigidLeaf(const FusionView& view, const float base[3],
     }
     for (int y = 0; y < kSize; ++y) {
       std::int32_t pixel[kSize];
-      float z_row[kSize];
-      for (int z = 0; z < kSize; ++z) {
-        pixel[z] = slab.pixel[z][y];
-        z_row[z] = slab.z[z][y];
-      }
+      for (int z = 0; z < kSize; ++z) pixel[z] = slab.pixel[z][y];
+      const Lanes z_row = {slab.z[0][y], slab.z[1][y], slab.z[2][y],
+                           slab.z[3][y], slab.z[4][y], slab.z[5][y],
+                           slab.z[6][y], slab.z[7][y]};
       changed |=
           FuseRow(view, pixel, z_row, RowAt(leaf, (x * kSize + y) * kSize));
     }
@@ -217,11 +232,9 @@ bool FuseWarpedLeaf(const FusionView& view,
       Flags pixels;
       Project(view, p[0], p[1], p[2], &pixels);
       std::int32_t pixel[kSize];
-      float z_row[kSize];
       std::memcpy(pixel, &pixels, sizeof(pixel));
-      std::memcpy(z_row, &p[2], sizeof(z_row));
       changed |=
-          FuseRow(view, pixel, z_row, RowAt(leaf, (x * kSize + y) * kSize));
+          FuseRow(view, pixel, p[2], RowAt(leaf, (x * kSize + y) * kSize));
     }
   }
   return changed;
