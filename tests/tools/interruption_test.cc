@@ -105,12 +105,19 @@ TEST_F(Interruption, ARunWritesWhatItHas) {
 }
 
 TEST_F(Interruption, ASecondSignalOfAnyKindEndsARunAtOnce) {
-  RunningProgram program("sf_run", "--sequence=" + (folder_ / "sequence") +
-                                       " --output=" + (folder_ / "run"));
-  const ProgramResult result =
-      InterruptTwice(&program, "run", SIGINT, SIGTERM, 0);
-  EXPECT_EQ(result.exit_code, -1) << "ended by itself";
-  EXPECT_FALSE(folder_.Has("run/summary.json"));
+  // A run that is quick enough ends by the first signal: it may try again.
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    const std::string run = "run" + std::to_string(attempt);
+    RunningProgram program("sf_run", "--sequence=" + (folder_ / "sequence") +
+                                         " --output=" + (folder_ / run));
+    const ProgramResult result =
+        InterruptTwice(&program, run, SIGINT, SIGTERM, 0);
+    if (result.exit_code == 1) continue;
+    EXPECT_EQ(result.exit_code, -1);
+    EXPECT_FALSE(folder_.Has(run + "/summary.json"));
+    return;
+  }
+  ADD_FAILURE() << "every run ended by itself";
 }
 
 class TwoSignals : public Interruption,
