@@ -188,12 +188,13 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
                                              : CentroidOf(samples, start);
   Rigid3d motion = MeanRigidMotion(*graph) * MeanRigidMotion(start).inverse();
   motion.translation() = motion * pivot - pivot;
-  report->reason = ReasonForLoss(surface, motion, *report);
+  const bool must_fit = surface != 0 && !graph->rigid();
+  report->reason = ReasonForLoss(must_fit, motion, *report);
   if (report->reason.empty() && !graph->rigid()) {
     DeformationGraph before = start;
     ApplyRigidMotion(back, &before);
     TrackNonRigid(samples, live, surface, before.motions, graph, report);
-    report->reason = ReasonForLoss(surface, motion, *report);
+    report->reason = ReasonForLoss(must_fit, motion, *report);
   }
   return report->reason.empty();
 }
@@ -275,8 +276,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   return settled;
 }
 
-std::string SurfaceTracker::ReasonForLoss(std::uint16_t surface,
-                                          const Rigid3d& motion,
+std::string SurfaceTracker::ReasonForLoss(bool must_fit, const Rigid3d& motion,
                                           const SurfaceReport& report) const {
   if (report.rounds.empty()) return "no model in view";
   const TrackingRound& last = report.rounds.back();
@@ -292,7 +292,7 @@ std::string SurfaceTracker::ReasonForLoss(std::uint16_t surface,
            std::to_string(comparable) + " model points fit the depth";
   }
   const int expected = comparable + counts.other_surface;
-  if (surface != 0 && counts.accepted < options_.min_fit * expected) {
+  if (must_fit && counts.accepted < options_.min_fit * expected) {
     return "only " + std::to_string(counts.accepted) + " of " +
            std::to_string(expected) + " model points in view lie on it";
   }

@@ -35,7 +35,8 @@ struct TrackerOptions {
   double min_accepted = 0.25;
   /// ... or if less than this fraction of what should be in view of it, apart
   /// from what no depth tells of, lies on it. Not of the background, before
-  /// which undetected things may stand.
+  /// which undetected things may stand, nor of rigid surfaces, which are kept
+  /// for people in the presets that do so.
   double min_fit = 0.45;
   /// ... or if the surface moved farther than predicted by this much.
   double max_translation = 0.35;  ///< Metres.
@@ -96,7 +97,7 @@ class SurfaceTracker {
                 const std::string& name, double prior_factor,
                 const std::vector<NodeMotion>& before, DeformationGraph* graph,
                 SurfaceReport* report) const;
-  std::string ReasonForLoss(std::uint16_t surface, const Rigid3d& motion,
+  std::string ReasonForLoss(bool must_fit, const Rigid3d& motion,
                             const SurfaceReport& report) const;
 
   TrackerOptions options_;
