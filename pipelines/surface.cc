@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "splitfusion/lib/association/canonical_places.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/geometry/mesh_pieces.h"
-#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 namespace {
@@ -46,12 +46,35 @@ double MedianDepth(const LiveView& live, int id) {
   return *middle;
 }
 
+/// A live point as near as this to a vertex is on the mesh, voxels.
+constexpr double kModelledVoxels = 3;
+
+/// Places of live points, every fourth pixel, that the graph has to grow over.
+std::vector<Eigen::Vector3d> PlacesBeyondNodes(const CanonicalPlaces& found) {
+  constexpr int kPixelStride = 4;
+  std::vector<Eigen::Vector3d> places;
+  for (int v = 0; v < found.points.rows; v += kPixelStride) {
+    for (int u = 0; u < found.points.cols; u += kPixelStride) {
+      if (found.coverage(v, u) !=
+          static_cast<std::uint8_t>(Coverage::kBeyondNodes)) {
+        continue;
+      }
+      const cv::Vec3f& p = found.points(v, u);
+      places.emplace_back(p[0], p[1], p[2]);
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
 void SurfaceOptions::Check() const {
   tsdf.Check();
   graph.Check();
   CheckOption(min_mesh_weight > 0, "min_mesh_weight", min_mesh_weight, "> 0");
+  CheckOption(looks >= 1, "looks", looks, ">= 1");
+  CheckOption(place_tolerance > 0, "place_tolerance", place_tolerance,
+              "metres > 0");
   CheckOption(min_piece_area >= 0, "min_piece_area", min_piece_area,
               "square metres, >= 0");
   CheckOption(growth_reach > 0, "growth_reach", growth_reach, "metres > 0");
@@ -104,49 +127,31 @@ void Surface::RefreshSkinning() {
 }
 
 void Surface::Fuse(const LiveView& live) {
-  const DepthObservation observation = Observe(live, id_);
+  DepthObservation observation = Observe(live, id_);
   if (kind_ == SurfaceKind::kRigid) {
     const Rigid3d camera_from_canonical = MeanRigidMotion(graph_);
     AllocateBand(observation, camera_from_canonical, &volume_);
     IntegrateRigid(observation, camera_from_canonical, &volume_);
   } else {
-    AllocateUncovered(live);
-    integrator_.Integrate(observation, *index_, WarpField(graph_),
-                          options_.growth_reach, &volume_);
+    FuseWarped(live, &observation);
   }
 }
 
-void Surface::AllocateUncovered(const LiveView& live) {
-  std::vector<Eigen::Vector3f> centers;
-  for (int i = 0; i < graph_.size(); ++i) {
-    centers.push_back(
-        (graph_.positions[i] + graph_.motions[i].translation).cast<float>());
-  }
-  const NearestPoint nodes(centers);
-  std::vector<Eigen::Vector3d> uncovered;
-  int node = -1;
-  constexpr int kPixelStride = 4;
-  for (int v = 0; v < live.depth.rows; v += kPixelStride) {
-    for (int u = 0; u < live.depth.cols; u += kPixelStride) {
-      if (live.labels(v, u) != id_ || !(live.depth(v, u) > 0) ||
-          live.edges(v, u) != 0 || live.uncertain(v, u) != 0) {
-        continue;
-      }
-      const cv::Vec3f& p = live.map.points(v, u);
-      const Eigen::Vector3f point(p[0], p[1], p[2]);
-      float distance = 0;
-      node = nodes.Find(point, node, &distance);
-      if (distance < graph_.node_spacing || distance > options_.growth_reach) {
-        continue;
-      }
-      // Eq. 1 of the nearest node, inverted.
-      const Eigen::Vector3d offset =
-          point.cast<double>() - centers[node].cast<double>();
-      uncovered.push_back(graph_.motions[node].rotation.transpose() * offset +
-                          graph_.positions[node]);
-    }
-  }
-  AllocateAround(uncovered, options_.tsdf.truncation, &volume_);
+void Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
+  const CanonicalPlaces found = FindCanonicalPlaces(
+      live, id_, graph_, mesh_.vertices, WarpedVertices(),
+      {kModelledVoxels * options_.tsdf.voxel_size, options_.growth_reach});
+  AllocateAround(PlacesBeyondNodes(found), options_.tsdf.truncation, &volume_);
+  observation->weight = live.confidence.clone();
+  cv::Mat cautious;
+  const cv::Mat unmodelled =
+      found.coverage > static_cast<int>(Coverage::kModelled);
+  cv::min(live.confidence, options_.min_mesh_weight / options_.looks, cautious);
+  cautious.copyTo(observation->weight, unmodelled);
+  observation->places = found.points;
+  observation->place_tolerance = options_.place_tolerance;
+  integrator_.Integrate(*observation, *index_, WarpField(graph_),
+                        options_.growth_reach, &volume_);
 }
 
 void Surface::FinishMesh() {

@@ -73,11 +73,14 @@ DEFINE_double(background_truncation, 0.04,
 DEFINE_double(object_truncation, 0.03,
               "Truncation of the distances of other surfaces, metres.");
 DEFINE_double(max_weight, 64, "Cap of a voxel's weight in the running mean.");
-DEFINE_double(object_free_weight, 3,
+DEFINE_double(object_free_weight, 0.3,
               "Cap of a voxel's weight where an object was found gone.");
 DEFINE_double(background_min_piece, 0.01,
               "Smaller pieces of the background's final mesh are left out, "
               "m^2.");
+DEFINE_double(object_looks, 2,
+              "Frames that must have seen a new part of a deforming surface "
+              "before it is meshed.");
 DEFINE_double(object_min_piece, 0.0025,
               "Smaller pieces of other surfaces' final meshes are left out, "
               "m^2.");
@@ -172,6 +175,7 @@ void SetModel(PipelineOptions* options) {
                               FLAGS_max_weight};
   options->background.min_piece_area = FLAGS_background_min_piece;
   options->object.min_piece_area = FLAGS_object_min_piece;
+  options->object.looks = FLAGS_object_looks;
   options->object.tsdf = {FLAGS_object_voxel, FLAGS_object_truncation,
                           FLAGS_max_weight, FLAGS_object_free_weight};
 }
@@ -200,6 +204,7 @@ void CheckParts(const PipelineOptions& options) {
               [&] { options.background.Check(); });
   NamingFlags({{"truncation", "object_truncation"},
                {"max_free_weight", "object_free_weight"},
+               {"looks", "object_looks"},
                {"min_piece_area", "object_min_piece"}},
               [&] { options.object.Check(); });
 }

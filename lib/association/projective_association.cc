@@ -17,6 +17,7 @@ enum class Outcome : std::uint8_t {
   kAccepted,
   kOutsideImage,
   kNoDepth,
+  kOccluded,
   kOtherSurface,
   kDepthEdge,
   kDistance,
@@ -63,7 +64,10 @@ class Associator {
       return Outcome::kNoDepth;
     }
     if (live_.labels(v, u) != surface_ || live_.uncertain(v, u) != 0) {
-      return Outcome::kOtherSurface;
+      const float depth = live_.depth(v, u);
+      return depth + kNoiseFactor * DepthSigma(depth) < point.z()
+                 ? Outcome::kOccluded
+                 : Outcome::kOtherSurface;
     }
     if (live_.edges(v, u) != 0) return Outcome::kDepthEdge;
     out->target = ToEigen(live_.map.points(v, u));
@@ -128,6 +132,9 @@ void Count(Outcome outcome, AssociationCounts* counts) {
       break;
     case Outcome::kNoDepth:
       ++counts->no_depth;
+      break;
+    case Outcome::kOccluded:
+      ++counts->occluded;
       break;
     case Outcome::kOtherSurface:
       ++counts->other_surface;

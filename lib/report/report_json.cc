@@ -14,6 +14,7 @@ Json ToJson(const AssociationCounts& counts) {
           {"accepted", counts.accepted},
           {"outside_image", counts.outside_image},
           {"no_depth", counts.no_depth},
+          {"occluded", counts.occluded},
           {"other_surface", counts.other_surface},
           {"depth_edge", counts.depth_edge},
           {"distance", counts.distance},

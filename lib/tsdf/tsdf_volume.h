@@ -42,6 +42,11 @@ struct DepthObservation {
   cv::Mat_<float> weight;       ///< Confidence of every pixel, about 0..1.
   cv::Mat_<std::uint8_t> role;  ///< PixelRole of every pixel.
   cv::Mat color;                ///< 8UC3, BGR.
+  /// Where in the canonical frame a pixel's point belongs, metres, NaN where
+  /// that is not known; empty: of none. What is farther than `place_tolerance`
+  /// (metres) from there is not written, only carved. Of warped surfaces.
+  cv::Mat_<cv::Vec3f> places;
+  double place_tolerance = 0;  ///< See `places`.
 };
 
 /// Truncated signed distance of one surface in its canonical frame, with

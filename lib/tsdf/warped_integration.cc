@@ -116,7 +116,49 @@ WarpedLattice GatherLattice(const openvdb::Coord& origin, float voxel,
   return warped;
 }
 
-bool IntegrateLeaf(const internal::FusionImage& image,
+/// Middle of a cell of the lattice, given its lowest point.
+Eigen::Vector3f CellCenter(const WarpedLattice& warped, int lowest) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const int x : {0, 9}) {
+    for (const int y : {0, 3}) {
+      for (const int z : {0, 1}) sum += warped[lowest + x + y + z];
+    }
+  }
+  return sum / 8;
+}
+
+/// Marks the cells of a block whose pixels belong elsewhere.
+void MarkForeign(const DepthObservation& observation, float voxel,
+                 const openvdb::Coord& origin, const WarpedLattice& warped,
+                 bool foreign[internal::kLatticeCells]) {
+  const float tolerance = static_cast<float>(observation.place_tolerance);
+  const Eigen::Vector3f half_cell =
+      Eigen::Vector3f::Constant(0.5f * kCell * voxel);
+  for (int i = 0; i < internal::kLatticeCells; ++i) {
+    const LatticeIndex lowest(9 * (i >> 2) + 3 * ((i >> 1) & 1) + (i & 1));
+    const Eigen::Vector3f center =
+        CellCenter(warped, 9 * lowest.x + 3 * lowest.y + lowest.z);
+    foreign[i] = false;
+    if (!(center.z() > 0)) continue;
+    const PinholeCamera& camera = observation.camera;
+    const Eigen::Vector2f pixel = camera.Project(center);
+    if (!(std::abs(pixel.x()) < camera.width &&
+          std::abs(pixel.y()) < camera.height)) {
+      continue;
+    }
+    const int u = static_cast<int>(std::lround(pixel.x()));
+    const int v = static_cast<int>(std::lround(pixel.y()));
+    if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
+    const cv::Vec3f& at = observation.places(v, u);
+    const Eigen::Vector3f apart = LatticePoint(origin, voxel, lowest) +
+                                  half_cell -
+                                  Eigen::Vector3f(at[0], at[1], at[2]);
+    foreign[i] = apart.squaredNorm() > tolerance * tolerance;
+  }
+}
+
+bool IntegrateLeaf(const DepthObservation& observation,
+                   const internal::FusionImage& image, float voxel,
                    const WarpedLattice& warped,
                    const internal::LeafBuffers& leaf) {
   float lattice[kLatticePoints][3];
@@ -127,7 +169,12 @@ bool IntegrateLeaf(const internal::FusionImage& image,
   if (!image.MayChange(internal::BoundInImage(view, lattice, kLatticePoints))) {
     return false;
   }
-  return internal::FuseWarpedLeaf(view, lattice, internal::ToFused(leaf));
+  bool foreign[internal::kLatticeCells] = {};
+  if (!observation.places.empty()) {
+    MarkForeign(observation, voxel, leaf.origin, warped, foreign);
+  }
+  return internal::FuseWarpedLeaf(view, lattice, foreign,
+                                  internal::ToFused(leaf));
 }
 
 /// The attached blocks that own the lattice of every block.
@@ -197,7 +244,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
   std::vector<char> changed(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     if (!lattices[i]->attached) return;
-    changed[i] = IntegrateLeaf(image,
+    changed[i] = IntegrateLeaf(observation, image, voxel,
                                GatherLattice(leaves[i].origin, voxel, owners[i],
                                              own, *lattices[i], warp),
                                leaves[i]);

@@ -12,8 +12,8 @@ namespace splitfusion {
 namespace {
 
 int Rejected(const AssociationCounts& c) {
-  return c.outside_image + c.no_depth + c.other_surface + c.depth_edge +
-         c.distance + c.normal_angle + c.grazing;
+  return c.outside_image + c.no_depth + c.occluded + c.other_surface +
+         c.depth_edge + c.distance + c.normal_angle + c.grazing;
 }
 
 /// A wall at 1.2 m, and model points on it at every fourth pixel.
@@ -108,6 +108,16 @@ TEST_F(AssociationTest, OtherSurface) {
   EXPECT_EQ(counts.other_surface, all() / 2);
   live_.uncertain.setTo(255);
   EXPECT_EQ(Run(/*surface=*/3).counts.other_surface, all());
+}
+
+TEST_F(AssociationTest, WhatAnotherSurfaceHidesIsToldFromWhatLiesBeforeIt) {
+  cv::Mat_<float> depth = WallDepth(camera_, 1.2);
+  depth.colRange(0, 80).setTo(0.9f);    // Nearer than the model.
+  depth.colRange(80, 160).setTo(1.5f);  // Farther.
+  live_ = View(depth);
+  const AssociationCounts counts = Run(/*surface=*/3).counts;
+  EXPECT_EQ(counts.occluded, all() / 2);
+  EXPECT_EQ(counts.other_surface, all() / 2);
 }
 
 TEST_F(AssociationTest, DepthEdge) {

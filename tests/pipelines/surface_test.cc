@@ -82,6 +82,28 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
   }
 }
 
+TEST(Surface, WhatIsNewIsMeshedOnceSeenSeveralTimes) {
+  SurfaceOptions options;
+  options.looks = 4;
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, options);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  const auto rightmost = [&] {
+    float x = -1;
+    for (const auto& v : box.mesh().vertices) x = std::max(x, v.x());
+    return x;
+  };
+  const float before = rightmost();
+  for (int frame = 5; frame < 10; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    // A margin of three voxels is on the mesh already.
+    if (frame < 8) {
+      EXPECT_LT(rightmost(), before + 0.1) << frame;
+    }
+  }
+  EXPECT_GT(rightmost(), before + 0.2);
+}
+
 TEST(Surface, VerticesMoveWithTheNodes) {
   for (const SurfaceKind kind : {SurfaceKind::kRigid, SurfaceKind::kNonRigid}) {
     Surface box = MakeBox(kind);
@@ -230,6 +252,12 @@ TEST(SurfaceOptions, RefuseValuesOutOfRange) {
   SurfaceOptions options;
   options.min_mesh_weight = -1;
   ExpectInputError([&] { options.Check(); }, "min_mesh_weight");
+  options = SurfaceOptions();
+  options.looks = 0.5;
+  ExpectInputError([&] { options.Check(); }, "looks = 0.5");
+  options = SurfaceOptions();
+  options.place_tolerance = 0;
+  ExpectInputError([&] { options.Check(); }, "place_tolerance = 0");
   options = SurfaceOptions();
   options.graph.max_nodes = 0;
   ExpectInputError([&] { options.Check(); }, "max_nodes = 0");

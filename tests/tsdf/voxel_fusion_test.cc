@@ -201,11 +201,41 @@ TEST_F(VoxelFusion, AWarpedBlockIsUpdatedWhereItsLatticeCarriesIt) {
       UpdateVoxel(seen_, p, i, &expected);
     }
     const Block before = block;
-    FuseWarpedLeaf(image_.view(), lattice, block.leaf());
+    const bool foreign[kLatticeCells] = {};
+    FuseWarpedLeaf(image_.view(), lattice, foreign, block.leaf());
     EXPECT_TRUE(block == expected) << "round " << round;
     EXPECT_TRUE(image_.MayChange(
                     BoundInImage(image_.view(), lattice, kLatticePoints)) ||
                 block == before);
+  }
+}
+
+TEST_F(VoxelFusion, IntoForeignCellsOnlyFreeSpaceIsFused) {
+  // Blocks before, in and behind a wall at 1 m.
+  seen_ = ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1));
+  const FusionImage image(seen_, kOptions);
+  const bool foreign[kLatticeCells] = {true, false, false, true,
+                                       true, true,  false, false};
+  for (const float z : {0.5f, 0.98f, 1.01f}) {
+    float lattice[kLatticePoints][3];
+    for (int i = 0; i < kLatticePoints; ++i) {
+      lattice[i][0] = 4 * kVoxel * static_cast<float>(i / 9);
+      lattice[i][1] = 4 * kVoxel * static_cast<float>(i / 3 % 3);
+      lattice[i][2] = z + 4 * kVoxel * static_cast<float>(i % 3);
+    }
+    const Block before = RandomBlock(&random_);
+    const bool none[kLatticeCells] = {};
+    Block anywhere = before, marked = before;
+    FuseWarpedLeaf(image.view(), lattice, none, anywhere.leaf());
+    FuseWarpedLeaf(image.view(), lattice, foreign, marked.leaf());
+    EXPECT_FALSE(anywhere == before);
+    for (int i = 0; i < 512; ++i) {
+      const int cell = 4 * (i / 256) + 2 * (i / 32 % 2) + i / 4 % 2;
+      const bool is_kept = foreign[cell] && z > 0.9f;
+      const Block& expected = is_kept ? before : anywhere;
+      EXPECT_EQ(marked.weight[i], expected.weight[i]) << z << " " << i;
+      EXPECT_EQ(marked.distance[i], expected.distance[i]) << z << " " << i;
+    }
   }
 }
 

@@ -129,6 +129,39 @@ TEST_F(WarpedIntegration, SkinningIsKeptAndMadeAnew) {
   }
 }
 
+TEST_F(WarpedIntegration, WhatBelongsElsewhereIsNotCopied) {
+  // Both halves of the graph lie upon the left half of the plate.
+  for (int i = 0; i < graph_.size(); ++i) {
+    if (graph_.positions[i].x() > 0) graph_.motions[i].translation.x() = -0.15;
+  }
+  DepthObservation seen =
+      ObserveAll(Camera(), MeshDepth(Camera(), CenteredPlate()));
+  const auto count_right = [&] {
+    int count = 0;
+    for (const auto& v : ExtractMesh(volume_, 0.5).vertices) {
+      count += v.x() > 0.1f;
+    }
+    return count;
+  };
+  // As if every pixel belonged where it is seen.
+  seen.places.create(seen.depth.size());
+  for (int v = 0; v < seen.depth.rows; ++v) {
+    for (int u = 0; u < seen.depth.cols; ++u) {
+      const Eigen::Vector3f p =
+          Camera().BackProject<float>(u, v, std::max(1.0f, seen.depth(v, u)));
+      seen.places(v, u) = {p.x(), p.y(), p.z()};
+    }
+  }
+  seen.place_tolerance = 0.08;
+  const WarpField warp(graph_);
+  integrator_.Integrate(seen, index_, warp, kReach, &volume_);
+  EXPECT_EQ(count_right(), 0);
+  EXPECT_GT(ExtractMesh(volume_, 0.5).vertices.size(), 700u);
+  seen.places.release();
+  integrator_.Integrate(seen, index_, warp, kReach, &volume_);
+  EXPECT_GT(count_right(), 200) << "the second copy";
+}
+
 TEST_F(WarpedIntegration, BlocksOutOfReachAreLeftAlone) {
   // A second plate, 0.3 m aside, where there is no node.
   const Rigid3d aside = MakeMotion({0, 0, 0}, {0.3, 0, 0});

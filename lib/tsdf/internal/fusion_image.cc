@@ -41,6 +41,7 @@ FusionImage::FusionImage(const DepthObservation& observation,
            static_cast<float>(camera.cx),
            static_cast<float>(camera.cy),
            truncation_,
+           std::nextafter(truncation_, kNever),
            static_cast<float>(options.max_weight),
            static_cast<float>(options.max_free_weight)};
   tbb::parallel_for(0, rows_, [&](int tile_row) {
@@ -55,7 +56,6 @@ void FusionImage::FillRow(const DepthObservation& observation, int v) {
   const std::uint8_t* role = observation.role[v];
   FusionPixel* pixels = &pixels_[static_cast<std::size_t>(v) * view_.width];
   float* reach = &reach_[static_cast<std::size_t>(v / kTile) * columns_];
-  const float beyond_truncation = std::nextafter(truncation_, kNever);
   for (int u = 0; u < view_.width; ++u) {
     const auto pixel_role = static_cast<PixelRole>(role[u]);
     if (pixel_role == PixelRole::kNone || !(depth[u] > 0)) {
@@ -64,7 +64,7 @@ void FusionImage::FillRow(const DepthObservation& observation, int v) {
     }
     pixels[u] = {
         depth[u], weight[u],
-        pixel_role == PixelRole::kWrite ? -truncation_ : beyond_truncation,
+        pixel_role == PixelRole::kWrite ? -truncation_ : view_.beyond_truncation,
         truncation_ + kFreeSpaceSigmas * DepthSigma(depth[u])};
     reach[u / kTile] =
         std::max(reach[u / kTile], depth[u] - pixels[u].change_from);

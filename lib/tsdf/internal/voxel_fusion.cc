@@ -103,13 +103,17 @@ SPLITFUSION_INLINE void Gather(const FusionView& view,
   row->free_above = __builtin_shuffle(high01, high23, second);
 }
 
-/// Fuses into eight voxels in a row, given their pixels and depths; returns
-/// whether a mesh may show it.
+/// Fuses into eight voxels in a row, given their pixels, their depths and the
+/// distance from which on they may be changed; returns whether a mesh may show
+/// it.
 SPLITFUSION_INLINE bool FuseRow(const FusionView& view,
                                 const std::int32_t pixel[kSize], const Lanes& z,
+                                const Lanes& change_from,
                                 const FusedLeaf& leaf) {
   PixelRow row;
   Gather(view, pixel, &row);
+  row.change_from =
+      row.change_from < change_from ? change_from : row.change_from;
   const Lanes sdf = row.depth - z;
   Flags changes = sdf >= row.change_from;
   if (!Any(changes)) return false;
@@ -183,6 +187,14 @@ SPLITFUSION_INLINE void InterpolateRow(const float plane[9][3], int y, int axis,
   *row = begin + along * (end - begin);
 }
 
+/// Distance from which on the voxels of a row in two cells may be changed.
+SPLITFUSION_INLINE void ChangeFrom(const FusionView& view,
+                                   const bool foreign[2], Lanes* from) {
+  const float a = foreign[0] ? view.beyond_truncation : -view.truncation;
+  const float b = foreign[1] ? view.beyond_truncation : -view.truncation;
+  *from = Lanes{a, a, a, a, b, b, b, b};
+}
+
 }  // namespace
 
 SPLITFUSION_VECTOR_CLONES
@@ -209,8 +221,8 @@ bool FuseRigidLeaf(const FusionView& view, const float base[3],
       const Lanes z_row = {slab.z[0][y], slab.z[1][y], slab.z[2][y],
                            slab.z[3][y], slab.z[4][y], slab.z[5][y],
                            slab.z[6][y], slab.z[7][y]};
-      changed |=
-          FuseRow(view, pixel, z_row, RowAt(leaf, (x * kSize + y) * kSize));
+      changed |= FuseRow(view, pixel, z_row, Lanes{} - view.truncation,
+                         RowAt(leaf, (x * kSize + y) * kSize));
     }
   }
   return changed;
@@ -219,7 +231,7 @@ bool FuseRigidLeaf(const FusionView& view, const float base[3],
 SPLITFUSION_VECTOR_CLONES
 bool FuseWarpedLeaf(const FusionView& view,
                     const float lattice[kLatticePoints][3],
-                    const FusedLeaf& leaf) {
+                    const bool foreign[kLatticeCells], const FusedLeaf& leaf) {
   bool changed = false;
   for (int x = 0; x < kSize; ++x) {
     float plane[9][3];
@@ -233,8 +245,10 @@ bool FuseWarpedLeaf(const FusionView& view,
       Project(view, p[0], p[1], p[2], &pixels);
       std::int32_t pixel[kSize];
       std::memcpy(pixel, &pixels, sizeof(pixel));
-      changed |=
-          FuseRow(view, pixel, p[2], RowAt(leaf, (x * kSize + y) * kSize));
+      Lanes change_from;
+      ChangeFrom(view, foreign + 4 * (x / 4) + 2 * (y / 4), &change_from);
+      changed |= FuseRow(view, pixel, p[2], change_from,
+                         RowAt(leaf, (x * kSize + y) * kSize));
     }
   }
   return changed;

@@ -22,7 +22,8 @@ struct FusionView {
   const std::uint8_t* color;  ///< Row by row, BGR.
   int width, height;
   float fx, fy, cx, cy;
-  float truncation;  ///< Metres.
+  float truncation;         ///< Metres.
+  float beyond_truncation;  ///< The next larger number.
   float max_weight, max_free_weight;
 };
 
@@ -46,13 +47,16 @@ bool FuseRigidLeaf(const FusionView& view, const float base[3],
 
 /// Points of a block that are warped: every fourth voxel, 3 x 3 x 3.
 constexpr int kLatticePoints = 27;
+/// Cells between them: 2 x 2 x 2, of 4 x 4 x 4 voxels.
+constexpr int kLatticeCells = 8;
 
 /// Fuses into a block whose every fourth voxel is at `lattice` (camera frame,
-/// metres; z varies fastest), and whose others are interpolated. Returns the
+/// metres; z varies fastest), and whose others are interpolated. Into cells
+/// marked as `foreign` (z varies fastest) only free space is fused. Returns the
 /// same.
 bool FuseWarpedLeaf(const FusionView& view,
                     const float lattice[kLatticePoints][3],
-                    const FusedLeaf& leaf);
+                    const bool foreign[kLatticeCells], const FusedLeaf& leaf);
 
 /// Bounding box of points in depth and in the image.
 struct ImageBox {
