@@ -27,14 +27,18 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
   camera_.Check();
 }
 
-FrameReport SplitFusion::ProcessFrame(const Frame& frame) {
+FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   const Stopwatch stopwatch;
+  const Frame& frame = prepared.frame;
   FrameReport report;
   report.frame = frame.index;
   report.timestamp = frame.timestamp;
   report.stem = frame.stem;
+  report.read_seconds = prepared.read_seconds;
+  report.segment_seconds = prepared.segment_seconds;
+  live_ = std::move(prepared.live);
   PredictMotions();
-  Split(frame, &report);
+  Split(prepared, &report);
   if (!surfaces_.empty()) {
     TrackBackground(&report);
     TrackObjects(&report);
@@ -43,7 +47,8 @@ FrameReport SplitFusion::ProcessFrame(const Frame& frame) {
   }
   AddNewSurfaces(frame, &report);
   Record(frame, &report);
-  report.total_seconds = stopwatch.Seconds();
+  report.total_seconds =
+      report.read_seconds + report.segment_seconds + stopwatch.Seconds();
   return report;
 }
 
@@ -61,21 +66,19 @@ void SplitFusion::PredictMotions() {
   }
 }
 
-void SplitFusion::Split(const Frame& frame, FrameReport* report) {
+void SplitFusion::Split(const PreparedFrame& prepared, FrameReport* report) {
   Stopwatch stopwatch;
-  live_ = MakeLiveView(camera_, frame.depth, frame.color);
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
   background_map_ = RenderBackground(surfaces_, camera_, options_.render_stride,
                                      options_.ray_cast);
   report->render_seconds += stopwatch.Restart();
   if (segmenter_ == nullptr || !options_.split_scene) return;
-  const std::vector<InstanceMask> detections = segmenter_->Segment(frame);
-  report->segment_seconds = stopwatch.Restart();
   SurfacePrediction prediction =
       ToPrediction(rendering_, background_map_, camera_);
   prediction.world_from_camera = WorldFromCamera();
-  SplitResult split = splitter_.Split(frame, live_.map, detections, prediction);
+  SplitResult split = splitter_.Split(prepared.frame, live_.map,
+                                      prepared.detections, prediction);
   live_.labels = split.labels;
   if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
   report->decisions = std::move(split.decisions);

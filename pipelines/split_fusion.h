@@ -14,6 +14,7 @@
 #include "splitfusion/pipelines/model_rendering.h"
 #include "splitfusion/pipelines/motion_predictor.h"
 #include "splitfusion/pipelines/pipeline_options.h"
+#include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/surface.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
@@ -32,7 +33,19 @@ class SplitFusion {
 
   /// One frame of the paper's overview figure: split, track every surface,
   /// fuse every surface.
-  FrameReport ProcessFrame(const Frame& frame);
+  FrameReport ProcessFrame(const Frame& frame) {
+    return ProcessFrame(Prepare(frame));
+  }
+
+  /// The first part of ProcessFrame(), which needs no model: it may run on
+  /// another thread while the frame before is processed. Frames in order, one
+  /// at a time.
+  PreparedFrame Prepare(const Frame& frame) const {
+    return PrepareFrame(camera_, frame,
+                        options_.split_scene ? segmenter_.get() : nullptr);
+  }
+  /// The rest of it.
+  FrameReport ProcessFrame(PreparedFrame prepared);
 
   /// Extracts the final meshes of all surfaces.
   void Finish();
@@ -50,7 +63,7 @@ class SplitFusion {
 
  private:
   void PredictMotions();
-  void Split(const Frame& frame, FrameReport* report);
+  void Split(const PreparedFrame& prepared, FrameReport* report);
   void TrackBackground(FrameReport* report);
   /// Every object on its own and at the same time.
   void TrackObjects(FrameReport* report);

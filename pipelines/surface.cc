@@ -1,5 +1,8 @@
 #include "splitfusion/pipelines/surface.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -163,11 +166,27 @@ void Surface::FinishMesh() {
 void Surface::UpdateMesh() {
   mesh_ = mesh_extractor_.Extract(volume_, options_.min_mesh_weight);
   if (kind_ == SurfaceKind::kNonRigid &&
-      GrowGraph(mesh_, options_.graph, &graph_, &history_) > 0) {
+      GrowGraph(mesh_, options_.graph, *index_, &graph_, &history_) > 0) {
     RefreshSkinning();
   } else {
-    mesh_skinning_ = index_->Skin(mesh_.vertices);
+    SkinNewVertices();
   }
+}
+
+void Surface::SkinNewVertices() {
+  const std::vector<int>& kept_from = mesh_extractor_.kept_from();
+  std::vector<Skinning> skinning(mesh_.vertices.size());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, skinning.size(), 2048),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        int nearest = -1;
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          skinning[i] = kept_from[i] >= 0
+                            ? mesh_skinning_[kept_from[i]]
+                            : index_->Skin(mesh_.vertices[i], &nearest);
+        }
+      });
+  mesh_skinning_ = std::move(skinning);
 }
 
 void Surface::RecordMotions(int frame, bool tracked) {
@@ -177,9 +196,13 @@ void Surface::RecordMotions(int frame, bool tracked) {
 std::vector<Eigen::Vector3f> Surface::WarpedVertices() const {
   const WarpField warp(graph_);
   std::vector<Eigen::Vector3f> warped(mesh_.vertices.size());
-  for (std::size_t i = 0; i < warped.size(); ++i) {
-    warped[i] = warp.WarpPoint(mesh_skinning_[i], mesh_.vertices[i]);
-  }
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, warped.size(), 4096),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          warped[i] = warp.WarpPoint(mesh_skinning_[i], mesh_.vertices[i]);
+        }
+      });
   return warped;
 }
 

@@ -120,6 +120,7 @@ class Surface {
   void PlaceGraph(const LiveView& live);
   void FuseWarped(const LiveView& live, DepthObservation* observation);
   void RefreshSkinning();
+  void SkinNewVertices();
 
   int id_;
   std::string label_;

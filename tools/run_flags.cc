@@ -66,6 +66,9 @@ DEFINE_int32(neighbors_per_node, 8, "Edges of a node.");
 DEFINE_double(near_spacing, 0.025, "Node spacing up to 0.7 m, metres.");
 DEFINE_double(far_spacing, 0.040, "Node spacing from 1.5 m on, metres.");
 DEFINE_int32(max_nodes, 2000, "Of a graph; its spacing grows to keep it.");
+DEFINE_double(growth_batch, 0,
+              "New nodes wait until they are so many, as a part of the graph's "
+              "(fewer, larger growths are faster).");
 DEFINE_double(background_voxel, 0.010, "Voxel size of the background, metres.");
 DEFINE_double(object_voxel, 0.005, "Voxel size of other surfaces, metres.");
 DEFINE_double(background_truncation, 0.04,
@@ -168,6 +171,7 @@ void SetModel(PipelineOptions* options) {
   graph.near_spacing = FLAGS_near_spacing;
   graph.far_spacing = FLAGS_far_spacing;
   graph.max_nodes = FLAGS_max_nodes;
+  graph.growth_batch = FLAGS_growth_batch;
   options->background.graph = graph;
   options->object.graph = graph;
   options->background.tsdf = {FLAGS_background_voxel,

@@ -13,16 +13,12 @@ DEFINE_int32(max_frames, 0, "Frames read at most; 0 = all.");
 DEFINE_int32(threads, 2, "Threads of all but Ceres; 0 = one a core.");
 
 namespace splitfusion {
-namespace {
-
 int ThreadsFromFlags() {
   CheckOption(FLAGS_threads >= 0 && FLAGS_threads <= 1024, "threads",
               FLAGS_threads, "1..1024, or 0 for one a core");
   if (FLAGS_threads > 0) return FLAGS_threads;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
-
-}  // namespace
 
 TumReaderOptions FramesFromFlags() {
   CheckOption(!FLAGS_sequence.empty(), "sequence", "''",

@@ -13,6 +13,9 @@ namespace splitfusion {
 /// @throw InputError if --sequence is missing or a value is out of its range.
 TumReaderOptions FramesFromFlags();
 
+/// --threads, or one a core. @throw InputError if it is out of its range.
+int ThreadsFromFlags();
+
 /// Limits the threads of TBB and OpenCV to --threads while it lives.
 class ThreadLimit {
  public:

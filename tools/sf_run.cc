@@ -19,6 +19,7 @@
 #include "sequence_flags.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/read_ahead.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/blas_threads.h"
 #include "splitfusion/lib/report/frame_pictures.h"
@@ -63,7 +64,8 @@ class Run {
         fusion_(reader_.camera(), options, LabelsFromFlags(),
                 SegmenterFromFlags(reader_, options, FLAGS_output)),
         directory_(FLAGS_output, FLAGS_overwrite,
-                   {FLAGS_preset, FlagfileText(), LibraryVersions()}) {
+                   {FLAGS_preset, FlagfileText(), LibraryVersions()}),
+        frames_([this] { return ReadNext(); }, ThreadsFromFlags() > 1) {
     WriteCalibration();
   }
 
@@ -125,19 +127,19 @@ class Run {
   }
 
   bool ProcessNext() {
-    const Stopwatch reading;
-    const std::optional<Frame> frame = reader_.Next();
-    if (!frame) return false;
-    const double read_seconds = reading.Seconds();
-    FrameReport report = fusion_.ProcessFrame(*frame);
-    report.read_seconds = read_seconds;
-    report.total_seconds += read_seconds;
+    const Stopwatch frame_time;
+    std::optional<PreparedFrame> prepared = frames_.Next();
+    if (!prepared) return false;
+    const Frame frame = prepared->frame;
+    FrameReport report = fusion_.ProcessFrame(std::move(*prepared));
+    // Less than the sum of its parts: reading overlaps with the frame before.
+    report.total_seconds = frame_time.Seconds();
     directory_.AddFrame(report, fusion_.trajectory().back());
-    WarnOfMissingDepth(*frame);
+    WarnOfMissingDepth(frame);
     WarnOfLostSurfaces(report);
     WarnOfCoarseGraphs(report.frame);
     const Stopwatch writing;
-    WritePictures(*frame, report.frame);
+    WritePictures(frame, report.frame);
     directory_.AddWritingSeconds(writing.Seconds());
     ++done_;
     ShowProgress(
@@ -145,6 +147,16 @@ class Run {
         "frames, " + std::to_string(fusion_.surfaces().size()) + " surfaces",
         since_start_.Seconds() / done_ * (reader_.size() - done_));
     return true;
+  }
+
+  std::optional<PreparedFrame> ReadNext() {
+    const Stopwatch reading;
+    std::optional<Frame> frame = reader_.Next();
+    if (!frame) return std::nullopt;
+    const double seconds = reading.Seconds();
+    PreparedFrame prepared = fusion_.Prepare(*frame);
+    prepared.read_seconds += seconds;
+    return prepared;
   }
 
   static void WarnOfLostSurfaces(const FrameReport& report) {
@@ -203,6 +215,7 @@ class Run {
   std::set<int> coarse_;  // Surfaces whose graph is coarser than planned.
   bool warned_of_depth_ = false;
   int done_ = 0;
+  ReadAhead<PreparedFrame> frames_;  // Last: its thread uses the others.
 };
 
 int RunSequence() {

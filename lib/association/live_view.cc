@@ -25,7 +25,7 @@ float EdgeJump(float depth, int step, float focal_length) {
 cv::Mat_<float> WithoutPinholes(const cv::Mat_<float>& depth,
                                 float focal_length) {
   cv::Mat_<float> filled = depth.clone();
-  for (int v = 1; v + 1 < depth.rows; ++v) {
+  tbb::parallel_for(1, std::max(1, depth.rows - 1), [&](int v) {
     for (int u = 1; u + 1 < depth.cols; ++u) {
       if (depth(v, u) > 0) continue;
       float sum = 0, low = 1e9f, high = 0;
@@ -40,16 +40,13 @@ cv::Mat_<float> WithoutPinholes(const cv::Mat_<float>& depth,
         filled(v, u) = sum / count;
       }
     }
-  }
+  });
   return filled;
 }
 
-GreyLevel MakeGreyLevel(const cv::Mat& color, double sigma) {
+GreyLevel MakeGreyLevel(const cv::Mat& grey, double sigma) {
   GreyLevel level;
-  cv::Mat grey;
-  cv::cvtColor(color, grey, cv::COLOR_BGR2GRAY);
-  grey.convertTo(level.value, CV_32F, 1.0 / 255);
-  cv::GaussianBlur(level.value, level.value, cv::Size(), sigma);
+  cv::GaussianBlur(grey, level.value, cv::Size(), sigma);
   cv::Mat by_u, by_v;
   constexpr double kSobelScale = 1.0 / 8;
   cv::Sobel(level.value, by_u, CV_32F, 1, 0, 3, kSobelScale);
@@ -61,26 +58,27 @@ GreyLevel MakeGreyLevel(const cv::Mat& color, double sigma) {
 /// 255 where a pixel lies next to a jump of depth (either side of it).
 cv::Mat_<std::uint8_t> DepthEdges(const cv::Mat_<float>& depth,
                                   float focal_length) {
+  const auto differ = [&](float z, int v, int u, int step) {
+    if (v < 0 || u < 0 || v >= depth.rows || u >= depth.cols) return false;
+    const float other = depth(v, u);
+    return other > 0 && std::abs(other - z) >
+                            EdgeJump(std::min(z, other), step, focal_length);
+  };
   cv::Mat_<std::uint8_t> edges(depth.size(), 0);
-  for (int v = 0; v < depth.rows; ++v) {
+  tbb::parallel_for(0, depth.rows, [&](int v) {
     for (int u = 0; u < depth.cols; ++u) {
       const float z = depth(v, u);
       if (!(z > 0)) continue;
-      const auto compare = [&](int v2, int u2, int step) {
-        if (v2 >= depth.rows || u2 >= depth.cols) return;
-        const float other = depth(v2, u2);
-        if (other > 0 && std::abs(other - z) >
-                             EdgeJump(std::min(z, other), step, focal_length)) {
-          edges(v, u) = edges(v2, u2) = 255;
-        }
-      };
+      bool is_edge = false;
       // Two pixels away too: edges come with a column of holes.
-      for (int step = 1; step <= 2; ++step) {
-        compare(v, u + step, step);
-        compare(v + step, u, step);
+      for (int step = 1; step <= 2 && !is_edge; ++step) {
+        is_edge = differ(z, v, u - step, step) ||
+                  differ(z, v, u + step, step) ||
+                  differ(z, v - step, u, step) || differ(z, v + step, u, step);
       }
+      if (is_edge) edges(v, u) = 255;
     }
-  }
+  });
   cv::Mat_<std::uint8_t> wide;
   const int size = 2 * (kEdgeRadius - 1) + 1;
   cv::dilate(edges, wide, cv::Mat::ones(size, size, CV_8U));
@@ -108,8 +106,11 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
   view.depth = WithoutPinholes(depth, focal_length);
   view.map = ComputePointMap(view.depth, camera);
   view.color = color;
-  for (int k = 0; k < 2; ++k)
-    view.grey[k] = MakeGreyLevel(color, kGreySigma[k]);
+  cv::Mat grey;
+  cv::cvtColor(color, grey, cv::COLOR_BGR2GRAY);
+  grey.convertTo(grey, CV_32F, 1.0 / 255);
+  tbb::parallel_for(
+      0, 2, [&](int k) { view.grey[k] = MakeGreyLevel(grey, kGreySigma[k]); });
   view.edges = DepthEdges(view.depth, focal_length);
   view.labels.create(depth.size());
   view.labels.setTo(0);

@@ -133,6 +133,22 @@ void BlendNewMotions(const std::vector<Eigen::Vector3d>& added,
   }
 }
 
+/// Positions for new nodes, as many as there is room for; the spacing is raised
+/// where it would be exceeded.
+std::vector<Eigen::Vector3d> NewPositions(const TriangleMesh& mesh,
+                                          const GraphOptions& options,
+                                          DeformationGraph* graph) {
+  std::vector<Eigen::Vector3d> added =
+      UncoveredPositions(mesh, *graph, graph->node_spacing);
+  const int room = options.max_nodes - graph->size();
+  while (static_cast<int>(added.size()) > room) {
+    graph->node_spacing *= 1.1;
+    added = UncoveredPositions(mesh, *graph, graph->node_spacing);
+    if (graph->size() > 0 && room <= 0) added.clear();
+  }
+  return added;
+}
+
 }  // namespace
 
 void GraphOptions::Check() const {
@@ -150,6 +166,8 @@ void GraphOptions::Check() const {
   CheckOption(far_depth > near_depth, "far_depth", far_depth,
               "metres > near_depth");
   CheckOption(max_nodes >= 1, "max_nodes", max_nodes, ">= 1");
+  CheckOption(growth_batch >= 0 && growth_batch <= 1, "growth_batch",
+              growth_batch, "0..1");
 }
 
 double NodeSpacing(const GraphOptions& options, double depth) {
@@ -162,25 +180,32 @@ double NodeSpacing(const GraphOptions& options, double depth) {
 
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               DeformationGraph* graph, MotionHistory* history) {
-  std::vector<Eigen::Vector3d> added =
-      UncoveredPositions(canonical_mesh, *graph, graph->node_spacing);
-  const int room = options.max_nodes - graph->size();
-  while (static_cast<int>(added.size()) > room) {
-    graph->node_spacing *= 1.1;
-    added = UncoveredPositions(canonical_mesh, *graph, graph->node_spacing);
-    if (graph->size() > 0 && room <= 0) added.clear();
+  if (graph->size() > 0) {
+    return GrowGraph(canonical_mesh, options,
+                     SkinningIndex(*graph, options.neighbors_per_point), graph,
+                     history);
   }
-  if (added.empty()) return 0;
-  if (graph->size() == 0) {
-    graph->motions.resize(added.size());
-  } else {
-    Carriers carriers = FindCarriers(
-        *graph, SkinningIndex(*graph, options.neighbors_per_point), added);
-    BlendNewMotions(added, &carriers, &graph->motions);
-    if (history != nullptr) {
-      for (FrameMotions& frame : history->frames) {
-        BlendNewMotions(added, &carriers, &frame.motions);
-      }
+  const std::vector<Eigen::Vector3d> nodes =
+      NewPositions(canonical_mesh, options, graph);
+  graph->positions = nodes;
+  graph->motions.resize(nodes.size());
+  graph->neighbors = ConnectAlongSurface(graph->positions, canonical_mesh,
+                                         options.neighbors_per_node);
+  return graph->size();
+}
+
+int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
+              const SkinningIndex& index, DeformationGraph* graph,
+              MotionHistory* history) {
+  const std::vector<Eigen::Vector3d> added =
+      NewPositions(canonical_mesh, options, graph);
+  const auto count = static_cast<double>(added.size());
+  if (added.empty() || count < options.growth_batch * graph->size()) return 0;
+  Carriers carriers = FindCarriers(*graph, index, added);
+  BlendNewMotions(added, &carriers, &graph->motions);
+  if (history != nullptr) {
+    for (FrameMotions& frame : history->frames) {
+      BlendNewMotions(added, &carriers, &frame.motions);
     }
   }
   graph->positions.insert(graph->positions.end(), added.begin(), added.end());

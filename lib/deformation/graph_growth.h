@@ -3,6 +3,7 @@
 
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
 namespace splitfusion {
@@ -19,6 +20,10 @@ struct GraphOptions {
   double near_depth = 0.7;  ///< Metres; up to here `near_spacing`.
   double far_depth = 1.5;   ///< Metres; from here `far_spacing`.
   int max_nodes = 2000;     ///< Per surface; the spacing grows to keep it.
+  /// New nodes wait until they are so many, as a part of the graph's: every
+  /// growth renews edges and skinning. Meanwhile nodes a little farther away
+  /// carry the points.
+  double growth_batch = 0;
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
@@ -38,6 +43,11 @@ double NodeSpacing(const GraphOptions& options, double depth);
 /// @return number of nodes added; edges are rebuilt only if it is not 0.
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               DeformationGraph* graph, MotionHistory* history);
+
+/// The same, given the skinning by the graph as it is.
+int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
+              const SkinningIndex& index, DeformationGraph* graph,
+              MotionHistory* history);
 
 }  // namespace splitfusion
 

@@ -135,8 +135,7 @@ Skinning SkinningIndex::Skin(const Eigen::Vector3f& point) const {
   return Skin(point, &nearest);
 }
 
-Skinning SkinningIndex::Skin(const Eigen::Vector3f& point,
-                             int* nearest) const {
+Skinning SkinningIndex::Skin(const Eigen::Vector3f& point, int* nearest) const {
   float distance = 0;
   *nearest = tree_.Find(point, *nearest, &distance);
   Skinning skinning;

@@ -50,7 +50,7 @@ struct FrameReport {
   int frame = 0;                 ///< Frame index, from 0.
   double timestamp = 0;          ///< Of the depth image, seconds.
   std::string stem;              ///< Depth file's name without extension.
-  double read_seconds = 0;       ///< Reading of the images.
+  double read_seconds = 0;       ///< Images, and their points and normals.
   double segment_seconds = 0;    ///< Masks from files or a network.
   double split_seconds = 0;      ///< Masks to surfaces.
   double render_seconds = 0;     ///< Rendering of the models.

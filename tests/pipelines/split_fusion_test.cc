@@ -183,7 +183,7 @@ void HideBehindBoard(Frame* frame, std::vector<InstanceMask>* detections) {
   for (InstanceMask& detection : *detections) {
     if (detection.class_name != "person") continue;
     cv::Rect box = cv::boundingRect(detection.mask);
-    box.x += box.width / 6;
+    box.x += box.width / 5;
     const cv::Rect image(0, 0, frame->depth.cols, frame->depth.rows);
     const cv::Rect board = cv::Rect(box.x, 0, box.width, image.height) & image;
     frame->depth(board).setTo(0.7f);

@@ -1,0 +1,30 @@
+#ifndef SPLITFUSION_PIPELINES_PREPARED_FRAME_H_
+#define SPLITFUSION_PIPELINES_PREPARED_FRAME_H_
+
+#include <vector>
+
+#include "splitfusion/lib/association/live_view.h"
+#include "splitfusion/lib/segmentation/segmenter.h"
+#include "splitfusion/lib/sequence/frame.h"
+
+namespace splitfusion {
+
+/// A frame with all that can be known of it without the model.
+struct PreparedFrame {
+  Frame frame;    ///< As it was read.
+  LiveView live;  ///< Points, normals, edges; no labels yet.
+  std::vector<InstanceMask> detections;  ///< Of the segmenter.
+  double read_seconds = 0;               ///< Spent on reading and on `live`.
+  double segment_seconds = 0;            ///< Spent on `detections`.
+};
+
+/// Prepares one frame; `segmenter` may be null.
+///
+/// @throw InputError if an image does not fit the camera, and what the
+/// segmenter throws.
+PreparedFrame PrepareFrame(const PinholeCamera& camera, Frame frame,
+                           Segmenter* segmenter);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_PREPARED_FRAME_H_
