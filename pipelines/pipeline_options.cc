@@ -10,6 +10,7 @@ PipelineOptions::PipelineOptions() {
   object.tsdf.voxel_size = 0.005;
   object.tsdf.truncation = 0.030;
   object.min_piece_area = 0.0025;
+  object.looks = 2;
   object.tsdf.max_free_weight = 0.3;
 }
 

@@ -52,6 +52,13 @@ double MedianDepth(const LiveView& live, int id) {
 /// A live point as near as this to a vertex is on the mesh, voxels.
 constexpr double kModelledVoxels = 3;
 
+/// How far from its place in the canonical frame a live point may be fused,
+/// metres: where a surface bends, voxels before and behind it, as far as the
+/// truncation, lie closer to or farther from one another than they are seen.
+double PlaceTolerance(const TsdfOptions& options) {
+  return 2 * options.truncation + 4 * options.voxel_size;
+}
+
 /// Places of live points, every fourth pixel, that the graph has to grow over.
 std::vector<Eigen::Vector3d> PlacesBeyondNodes(const CanonicalPlaces& found) {
   constexpr int kPixelStride = 4;
@@ -76,8 +83,6 @@ void SurfaceOptions::Check() const {
   graph.Check();
   CheckOption(min_mesh_weight > 0, "min_mesh_weight", min_mesh_weight, "> 0");
   CheckOption(looks >= 1, "looks", looks, ">= 1");
-  CheckOption(place_tolerance > 0, "place_tolerance", place_tolerance,
-              "metres > 0");
   CheckOption(min_piece_area >= 0, "min_piece_area", min_piece_area,
               "square metres, >= 0");
   CheckOption(growth_reach > 0, "growth_reach", growth_reach, "metres > 0");
@@ -145,14 +150,17 @@ void Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
       live, id_, graph_, mesh_.vertices, WarpedVertices(),
       {kModelledVoxels * options_.tsdf.voxel_size, options_.growth_reach});
   AllocateAround(PlacesBeyondNodes(found), options_.tsdf.truncation, &volume_);
-  observation->weight = live.confidence.clone();
-  cv::Mat cautious;
-  const cv::Mat unmodelled =
-      found.coverage > static_cast<int>(Coverage::kModelled);
-  cv::min(live.confidence, options_.min_mesh_weight / options_.looks, cautious);
-  cautious.copyTo(observation->weight, unmodelled);
+  if (options_.looks > 1) {
+    // So many of these weigh as much as a mesh asks for.
+    cv::Mat_<float> cautious;
+    cv::min(live.confidence, options_.min_mesh_weight / options_.looks,
+            cautious);
+    observation->weight = live.confidence.clone();
+    cautious.copyTo(observation->weight,
+                    found.coverage > static_cast<int>(Coverage::kModelled));
+  }
   observation->places = found.points;
-  observation->place_tolerance = options_.place_tolerance;
+  observation->place_tolerance = PlaceTolerance(options_.tsdf);
   integrator_.Integrate(*observation, *index_, WarpField(graph_),
                         options_.growth_reach, &volume_);
 }

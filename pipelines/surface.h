@@ -26,14 +26,11 @@ struct SurfaceOptions {
   /// Observations a voxel needs before it is meshed (weights, about frames at
   /// close range).
   double min_mesh_weight = 0.05;
-  /// What a non-rigid surface's mesh does not cover yet is meshed once seen in
-  /// about so many frames: a limb that tracking could not follow does not
-  /// become model twice.
-  double looks = 2;
-  /// Live points of a non-rigid surface are fused no farther than this from
-  /// their place in the canonical frame, metres; see CanonicalPlaces. About
-  /// twice the truncation, for bends.
-  double place_tolerance = 0.08;
+  /// What the mesh of a non-rigid surface does not cover yet is meshed once
+  /// seen in so many frames, and where it had been carved in several times as
+  /// many: a limb that tracking could not follow does not become model twice.
+  /// 1: at once.
+  double looks = 1;
   /// Pieces of the final mesh smaller than this are left out, square metres:
   /// noise, and remains of what moved on.
   double min_piece_area = 0.01;

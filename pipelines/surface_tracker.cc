@@ -161,8 +161,8 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
   const AssociationCounts& counts = association.counts;
   // Truncated at 2 cm and at a fifth of the grey range; a sample that fits
   // nowhere counts 1 for each.
-  double sum =
-      2.0 * (counts.distance + counts.normal_angle + counts.other_surface);
+  double sum = 2.0 * (counts.distance + counts.normal_angle +
+                      counts.other_surface + counts.occluded);
   for (const Correspondence& c : association.correspondences) {
     const double distance =
         c.warped_normal.dot(warp.WarpPoint(c.model.skinning, c.model.point) -

@@ -8,7 +8,7 @@ packages=(
   libceres-dev libeigen3-dev libsuitesparse-dev libopenblas0-pthread
   libopencv-dev libpcl-dev libopenvdb-dev libtbb-dev
   libgflags-dev libgoogle-glog-dev nlohmann-json3-dev
-  libgtest-dev libbenchmark-dev doxygen python3-onnx
+  libgtest-dev libgmock-dev libbenchmark-dev doxygen python3-onnx
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -82,8 +82,8 @@ DEFINE_double(background_min_piece, 0.01,
               "Smaller pieces of the background's final mesh are left out, "
               "m^2.");
 DEFINE_double(object_looks, 2,
-              "Frames that must have seen a new part of a deforming surface "
-              "before it is meshed.");
+              "Frames that must have seen a new part of a deforming object "
+              "before it is meshed; more where it was found empty before.");
 DEFINE_double(object_min_piece, 0.0025,
               "Smaller pieces of other surfaces' final meshes are left out, "
               "m^2.");

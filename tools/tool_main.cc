@@ -49,38 +49,71 @@ std::string Wrapped(const std::string& text) {
   return lines;
 }
 
-std::string FlagHelp(const gflags::CommandLineFlagInfo& flag) {
-  std::string head = "  --" + flag.name;
+using Flags = std::vector<gflags::CommandLineFlagInfo>;
+
+/// --name=default
+std::string FlagText(const gflags::CommandLineFlagInfo& flag) {
   const std::string value = FlagValueText(flag.type, flag.default_value);
-  if (!value.empty()) head += "=" + value;
-  if (head.size() + 2 > kTextColumn) {
-    head += "\n" + std::string(kTextColumn, ' ');
-  } else {
-    head.resize(kTextColumn, ' ');
-  }
-  return head + Wrapped(flag.description);
+  return "--" + flag.name + (value.empty() ? "" : "=" + value);
 }
 
-/// Help on the flags of this folder by the file that defines them; of a file
-/// that tools share the name is a heading.
-std::map<std::string, std::string> HelpByFile() {
-  std::vector<gflags::CommandLineFlagInfo> flags;
+/// A flag a line, or more, with its description.
+std::string Described(const Flags& flags) {
+  std::string text;
+  for (const auto& flag : flags) {
+    std::string head = "  " + FlagText(flag);
+    if (head.size() + 2 > kTextColumn) {
+      head += "\n" + std::string(kTextColumn, ' ');
+    } else {
+      head.resize(kTextColumn, ' ');
+    }
+    text += head + Wrapped(flag.description) + '\n';
+  }
+  return text;
+}
+
+/// Names and defaults only, in lines up to kColumns where they fit.
+std::string Listed(const Flags& flags) {
+  std::string text, line;
+  for (const auto& flag : flags) {
+    const std::string entry = "  " + FlagText(flag);
+    if (!line.empty() && line.size() + entry.size() > kColumns) {
+      text += line + '\n';
+      line.clear();
+    }
+    line += entry;
+  }
+  return text + line + '\n';
+}
+
+/// The flags of this folder by the file that defines them.
+std::map<std::string, Flags> FlagsByFile() {
+  Flags flags;
   gflags::GetAllFlags(&flags);
-  std::map<std::string, std::string> help;
+  std::map<std::string, Flags> by_file;
   for (const auto& flag : flags) {
     if (!IsToolFlag(flag.name)) continue;
-    help[std::filesystem::path(flag.filename).stem().string()] +=
-        FlagHelp(flag) + '\n';
+    by_file[std::filesystem::path(flag.filename).stem().string()].push_back(
+        flag);
   }
-  return help;
+  return by_file;
 }
 
+/// Help that fits a screen: of files with many flags, those of model, tracking
+/// and solver, the names only.
 void PrintHelp(const std::string& name, const std::string& usage) {
-  std::map<std::string, std::string> help = HelpByFile();
-  std::cout << usage << help[name];
-  help.erase(name);
-  for (const auto& [file, text] : help) {
-    std::cout << file.substr(0, file.find('_')) << ":\n" << text;
+  constexpr std::size_t kMany = 24;
+  std::map<std::string, Flags> files = FlagsByFile();
+  std::cout << usage << Described(files[name]);
+  files.erase(name);
+  for (const auto& [file, flags] : files) {
+    std::cout << file.substr(0, file.find('_'));
+    if (flags.size() < kMany) {
+      std::cout << ":\n" << Described(flags);
+    } else {
+      std::cout << " (--helpon=" << file << " describes them):\n"
+                << Listed(flags);
+    }
   }
   std::cout << "Also --flagfile=FILE (one flag a line), --helpfull.\n";
 }

@@ -12,7 +12,7 @@ struct AssociationCounts {
   int outside_image = 0;  ///< Projects outside the live image.
   int no_depth = 0;       ///< No live depth or normal at the pixel.
   int occluded = 0;       ///< Behind the live pixel of another surface.
-  int other_surface = 0;  ///< The live pixel belongs to another one, not nearer.
+  int other_surface = 0;  ///< Another one's pixel, not nearer; or uncertain.
   int depth_edge = 0;     ///< The live pixel lies on a depth discontinuity.
   int distance = 0;       ///< Farther apart than the gate.
   int normal_angle = 0;   ///< Normals differ by more than the gate.

@@ -65,7 +65,8 @@ class Associator {
     }
     if (live_.labels(v, u) != surface_ || live_.uncertain(v, u) != 0) {
       const float depth = live_.depth(v, u);
-      return depth + kNoiseFactor * DepthSigma(depth) < point.z()
+      return live_.labels(v, u) != surface_ &&
+                     depth + kNoiseFactor * DepthSigma(depth) < point.z()
                  ? Outcome::kOccluded
                  : Outcome::kOtherSurface;
     }

@@ -52,8 +52,8 @@ cv::Mat Bilateral(const cv::Mat& depth, const DepthFilterOptions& options) {
 void DepthFilterOptions::Check() const {
   CheckOption(std::isfinite(min_depth) && min_depth >= 0, "min_depth",
               min_depth, "metres >= 0");
-  CheckOption(std::isfinite(max_depth) && max_depth > min_depth, "max_depth",
-              max_depth, "metres above min_depth");
+  CheckOption(max_depth > min_depth && max_depth <= 100, "max_depth", max_depth,
+              "metres above min_depth, <= 100");
   CheckOption(bilateral_diameter >= 0 && bilateral_diameter <= 31,
               "bilateral_diameter", bilateral_diameter, "0 (off) to 31 pixels");
   CheckOption(bilateral_sigma_depth > 0, "bilateral_sigma_depth",

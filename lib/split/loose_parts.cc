@@ -104,6 +104,7 @@ float Distance(const Patch& a, const Patch& b) {
 /// part of is out of sight.
 bool IsStripAtBorder(const Patch& patch) {
   const cv::Size size = patch.pixels.size();
+  if (std::min(size.width, size.height) <= 2 * kGap) return true;
   cv::Mat at_border = patch.pixels.clone();
   at_border(cv::Rect(kGap, kGap, size.width - 2 * kGap, size.height - 2 * kGap))
       .setTo(0);

@@ -51,8 +51,10 @@ typename Grid::Ptr FindGrid(const openvdb::GridPtrVec& grids,
 void TsdfOptions::Check() const {
   CheckOption(voxel_size > 0 && voxel_size < 1, "voxel_size", voxel_size,
               "metres between 0 and 1");
-  CheckOption(truncation >= 2 * voxel_size, "truncation", truncation,
-              "at least 2 voxels (" + std::to_string(2 * voxel_size) + " m)");
+  CheckOption(truncation >= 2 * voxel_size && truncation <= 50 * voxel_size,
+              "truncation", truncation,
+              "2 to 50 voxels (" + std::to_string(2 * voxel_size) + " to " +
+                  std::to_string(50 * voxel_size) + " m)");
   CheckOption(max_weight >= 1, "max_weight", max_weight, ">= 1");
   CheckOption(max_free_weight > 0, "max_free_weight", max_free_weight, "> 0");
 }

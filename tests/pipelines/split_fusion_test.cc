@@ -64,8 +64,9 @@ void ExpectSoundReport(const FrameReport& report) {
       EXPECT_TRUE(round.stage == "rigid" || round.stage == "non_rigid");
       EXPECT_GE(round.prior_factor, 1);
       const AssociationCounts& c = round.association;
-      EXPECT_EQ(c.accepted + c.outside_image + c.no_depth + c.occluded + c.other_surface +
-                    c.depth_edge + c.distance + c.normal_angle + c.grazing,
+      EXPECT_EQ(c.accepted + c.outside_image + c.no_depth + c.occluded +
+                    c.other_surface + c.depth_edge + c.distance +
+                    c.normal_angle + c.grazing,
                 c.model_points);
       EXPECT_TRUE(std::isfinite(round.solver.final_cost));
       EXPECT_LE(round.solver.final_cost, round.solver.initial_cost);

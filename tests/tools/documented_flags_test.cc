@@ -94,11 +94,11 @@ std::vector<Mention> ReadPages() {
 std::map<std::string, Flags> KnownFlags() {
   std::map<std::string, Flags> known;
   for (const char* program : kPrograms) {
-    known[program] = {"help", "helpfull", "flagfile"};
+    known[program] = {"help", "helpfull", "helpon", "flagfile"};
     const std::string help = RunProgram(program, "--help").output;
     std::size_t begin = 0;
-    while ((begin = help.find("\n  --", begin)) != std::string::npos) {
-      begin += 5;
+    while ((begin = help.find("  --", begin)) != std::string::npos) {
+      begin += 4;
       known[program].insert(
           help.substr(begin, help.find_first_of("= \n", begin) - begin));
     }

@@ -30,8 +30,10 @@ TEST_F(FlagMessages, NameTheFlagWhereTheOptionHasAnotherName) {
   RunRefuses("--object_voxel=1e-9",
              "--object_voxel = 1e-09: expected metres from 0.001 to below 1");
   RunRefuses("--background_truncation=0.01",
-             "--background_truncation = 0.01: expected at least 2 voxels");
-  RunRefuses("--object_voxel=0.02", "--object_truncation = 0.03: expected at");
+             "--background_truncation = 0.01: expected 2 to 50 voxels");
+  RunRefuses("--object_voxel=0.02", "--object_truncation = 0.03: expected 2 ");
+  RunRefuses("--object_truncation=10", "--object_truncation = 10: expected 2 ");
+  RunRefuses("--max_depth=1e9", "--max_depth = 1e+09: expected metres above");
   RunRefuses("--object_min_piece=-1", "--object_min_piece = -1: expected squ");
   RunRefuses("--object_free_weight=0", "--object_free_weight = 0: expected >");
   RunRefuses("--solver_iterations=0", "--solver_iterations = 0: expected");

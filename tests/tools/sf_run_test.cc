@@ -219,9 +219,10 @@ TEST_F(SfRun, RefusesToOverwriteUnlessTold) {
   EXPECT_EQ(folder_.Read("run/mine.txt"), "do not touch");
 }
 
-TEST_F(SfRun, HelpNamesOwnFlags) {
+TEST_F(SfRun, HelpNamesOwnFlagsAndFitsAScreen) {
   const ProgramResult result = RunProgram("sf_run", "--help");
   EXPECT_EQ(result.exit_code, 0);
+  EXPECT_LT(std::count(result.output.begin(), result.output.end(), '\n'), 60);
   EXPECT_THAT(result.output,
               AllOf(HasSubstr("--sequence"), HasSubstr("--linear_solver"),
                     HasSubstr("--trust_region")));

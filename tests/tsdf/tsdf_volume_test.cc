@@ -276,7 +276,7 @@ TEST(TsdfOptions, RefuseValuesOutOfRange) {
       [] {
         TsdfVolume({0.01, 0.015, 64});
       },
-      "truncation = 0.015: expected at least 2 voxels (0.02");
+      "truncation = 0.015: expected 2 to 50 voxels (0.02");
   ExpectInputError(
       [] {
         TsdfVolume({0.01, 0.04, 0});

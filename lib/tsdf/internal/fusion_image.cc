@@ -62,10 +62,10 @@ void FusionImage::FillRow(const DepthObservation& observation, int v) {
       pixels[u] = kNoPixel;
       continue;
     }
-    pixels[u] = {
-        depth[u], weight[u],
-        pixel_role == PixelRole::kWrite ? -truncation_ : view_.beyond_truncation,
-        truncation_ + kFreeSpaceSigmas * DepthSigma(depth[u])};
+    pixels[u] = {depth[u], weight[u],
+                 pixel_role == PixelRole::kWrite ? -truncation_
+                                                 : view_.beyond_truncation,
+                 truncation_ + kFreeSpaceSigmas * DepthSigma(depth[u])};
     reach[u / kTile] =
         std::max(reach[u / kTile], depth[u] - pixels[u].change_from);
   }

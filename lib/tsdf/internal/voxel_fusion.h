@@ -38,10 +38,9 @@ struct FusedLeaf {
 /// No mesh asks whether a voxel has been observed more than this.
 constexpr float kFirmWeight = 8;
 
-/// Fuses into a block whose voxel (x, y, z) is at base + x steps[0] + y
-/// steps[1]
-/// + z steps[2] of the camera frame, metres. Returns whether a mesh may show
-/// it: a distance, a colour, or a weight below kFirmWeight is another one.
+/// Fuses into a block whose voxel (x, y, z) is at base + x steps[0] + y steps[1]
+/// + z steps[2], camera frame, metres. Returns whether a mesh may show it: a
+/// distance, a colour, or a weight below kFirmWeight is another one.
 bool FuseRigidLeaf(const FusionView& view, const float base[3],
                    const float steps[3][3], const FusedLeaf& leaf);
 
