@@ -135,9 +135,8 @@ void MarkForeign(const DepthObservation& observation, float voxel,
   const Eigen::Vector3f half_cell =
       Eigen::Vector3f::Constant(0.5f * kCell * voxel);
   for (int i = 0; i < internal::kLatticeCells; ++i) {
-    const LatticeIndex lowest(9 * (i >> 2) + 3 * ((i >> 1) & 1) + (i & 1));
-    const Eigen::Vector3f center =
-        CellCenter(warped, 9 * lowest.x + 3 * lowest.y + lowest.z);
+    const int lowest = 9 * (i >> 2) + 3 * ((i >> 1) & 1) + (i & 1);
+    const Eigen::Vector3f center = CellCenter(warped, lowest);
     foreign[i] = false;
     if (!(center.z() > 0)) continue;
     const PinholeCamera& camera = observation.camera;
@@ -150,9 +149,9 @@ void MarkForeign(const DepthObservation& observation, float voxel,
     const int v = static_cast<int>(std::lround(pixel.y()));
     if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
     const cv::Vec3f& at = observation.places(v, u);
-    const Eigen::Vector3f apart = LatticePoint(origin, voxel, lowest) +
-                                  half_cell -
-                                  Eigen::Vector3f(at[0], at[1], at[2]);
+    const Eigen::Vector3f apart =
+        LatticePoint(origin, voxel, LatticeIndex(lowest)) + half_cell -
+        Eigen::Vector3f(at[0], at[1], at[2]);
     foreign[i] = apart.squaredNorm() > tolerance * tolerance;
   }
 }
