@@ -198,10 +198,10 @@ std::vector<ModelSample> VisibleSamples(const MeshRendering& rendering,
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, samples.size(), 512),
       [&](const tbb::blocked_range<std::size_t>& range) {
-        int nearest = -1;
+        SkinningSupport support;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
           ModelSample& sample = samples[i];
-          sample.skinning = index.Skin(sample.point, &nearest);
+          sample.skinning = index.Skin(sample.point, &support);
           sample.normal = warp.UnwarpNormal(sample.skinning, sample.normal);
         }
       });

@@ -120,18 +120,16 @@ void Surface::PlaceGraph(const LiveView& live) {
     graph_.node_spacing = planned_node_spacing_;
     GrowGraph(mesh_, options_.graph, &graph_, nullptr);
   }
-  RefreshSkinning();
-}
-
-void Surface::RefreshSkinning() {
   index_ = std::make_unique<SkinningIndex>(graph_,
                                            options_.graph.neighbors_per_point);
-  integrator_.InvalidateSkinning();
-  if (kind_ == SurfaceKind::kNonRigid) {
-    AllocateAround(graph_.positions,
-                   graph_.node_spacing + options_.tsdf.truncation, &volume_);
-  }
-  mesh_skinning_ = index_->Skin(mesh_.vertices);
+  AllocateAroundNodes(0);
+  mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
+}
+
+void Surface::AllocateAroundNodes(int first) {
+  if (kind_ == SurfaceKind::kRigid) return;
+  AllocateAround({graph_.positions.begin() + first, graph_.positions.end()},
+                 graph_.node_spacing + options_.tsdf.truncation, &volume_);
 }
 
 void Surface::Fuse(const LiveView& live) {
@@ -168,33 +166,29 @@ void Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
 void Surface::FinishMesh() {
   mesh_ = WithoutSmallPieces(ExtractMesh(volume_, options_.min_mesh_weight),
                              options_.min_piece_area);
-  mesh_skinning_ = index_->Skin(mesh_.vertices);
+  mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
 }
 
 void Surface::UpdateMesh() {
   mesh_ = mesh_extractor_.Extract(volume_, options_.min_mesh_weight);
-  if (kind_ == SurfaceKind::kNonRigid &&
-      GrowGraph(mesh_, options_.graph, *index_, &graph_, &history_) > 0) {
-    RefreshSkinning();
-  } else {
-    SkinNewVertices();
-  }
+  mesh_skinning_.FollowMesh(*index_, mesh_.vertices,
+                            mesh_extractor_.kept_from());
+  if (kind_ == SurfaceKind::kNonRigid) GrowOverMesh();
 }
 
-void Surface::SkinNewVertices() {
-  const std::vector<int>& kept_from = mesh_extractor_.kept_from();
-  std::vector<Skinning> skinning(mesh_.vertices.size());
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, skinning.size(), 2048),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        int nearest = -1;
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          skinning[i] = kept_from[i] >= 0
-                            ? mesh_skinning_[kept_from[i]]
-                            : index_->Skin(mesh_.vertices[i], &nearest);
-        }
-      });
-  mesh_skinning_ = std::move(skinning);
+void Surface::GrowOverMesh() {
+  const int before = graph_.size();
+  if (GrowGraph(mesh_, options_.graph, *index_, mesh_skinning_.supports(),
+                &graph_, &history_) == 0) {
+    return;
+  }
+  auto grown = std::make_unique<SkinningIndex>(
+      graph_, options_.graph.neighbors_per_point);
+  const SkinningChange change(*index_, *grown, graph_);
+  index_ = std::move(grown);
+  integrator_.FollowGraph(*index_, change, volume_);
+  mesh_skinning_.FollowGraph(*index_, mesh_.vertices, change);
+  AllocateAroundNodes(before);
 }
 
 void Surface::RecordMotions(int frame, bool tracked) {
@@ -208,7 +202,7 @@ std::vector<Eigen::Vector3f> Surface::WarpedVertices() const {
       tbb::blocked_range<std::size_t>(0, warped.size(), 4096),
       [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          warped[i] = warp.WarpPoint(mesh_skinning_[i], mesh_.vertices[i]);
+          warped[i] = warp.WarpPoint(mesh_skinning()[i], mesh_.vertices[i]);
         }
       });
   return warped;

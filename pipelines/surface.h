@@ -7,6 +7,7 @@
 
 #include "splitfusion/lib/association/live_view.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
+#include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
@@ -109,15 +110,17 @@ class Surface {
   /// Its mesh, canonical frame; see UpdateMesh() and FinishMesh().
   const TriangleMesh& mesh() const { return mesh_; }
   /// Skinning of the mesh's vertices.
-  const std::vector<Skinning>& mesh_skinning() const { return mesh_skinning_; }
+  const std::vector<Skinning>& mesh_skinning() const {
+    return mesh_skinning_.skinning();
+  }
   /// Motions of all frames so far.
   const MotionHistory& history() const { return history_; }
 
  private:
   void PlaceGraph(const LiveView& live);
   void FuseWarped(const LiveView& live, DepthObservation* observation);
-  void RefreshSkinning();
-  void SkinNewVertices();
+  void GrowOverMesh();
+  void AllocateAroundNodes(int first);
 
   int id_;
   std::string label_;
@@ -132,7 +135,7 @@ class Surface {
   std::unique_ptr<SkinningIndex> index_;
   MeshExtractor mesh_extractor_;
   TriangleMesh mesh_;
-  std::vector<Skinning> mesh_skinning_;
+  MeshSkinning mesh_skinning_;
   MotionHistory history_;
 };
 

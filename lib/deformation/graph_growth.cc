@@ -1,16 +1,13 @@
 #include "splitfusion/lib/deformation/graph_growth.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/surface_edges.h"
-#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 namespace {
@@ -49,45 +46,27 @@ class CoverGrid {
   std::map<Key, std::vector<Eigen::Vector3d>> cells_;
 };
 
-/// Clears the flag of every vertex that a node of the graph covers.
-void CloseNear(const TriangleMesh& mesh, const DeformationGraph& graph,
-               double spacing, std::vector<char>* open) {
-  std::vector<Eigen::Vector3f> nodes;
-  for (const Eigen::Vector3d& g : graph.positions) {
-    nodes.push_back(g.cast<float>());
-  }
-  const NearestPoint tree(nodes);
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, open->size(), 2048),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        int nearest = -1;
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          float distance = 0;
-          nearest = tree.Find(mesh.vertices[i], nearest, &distance);
-          if (distance < spacing) (*open)[i] = false;
-        }
-      });
-}
-
 /// Vertices that keep `spacing` from the nodes and from one another, greedily
 /// in vertex order. Specks of the mesh (vertices without a triangle) get none.
-std::vector<Eigen::Vector3d> UncoveredPositions(const TriangleMesh& mesh,
-                                                const DeformationGraph& graph,
-                                                double spacing) {
+std::vector<int> UncoveredVertices(const TriangleMesh& mesh,
+                                   const std::vector<SkinningSupport>& supports,
+                                   double spacing) {
   std::vector<char> open(mesh.vertices.size(), false);
   for (const Eigen::Vector3i& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) open[t[k]] = true;
   }
-  if (graph.size() > 0) CloseNear(mesh, graph, spacing, &open);
   CoverGrid cover(spacing);
-  std::vector<Eigen::Vector3d> added;
+  std::vector<int> uncovered;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (!open[i] || (!supports.empty() && supports[i].distance < spacing)) {
+      continue;
+    }
     const Eigen::Vector3d p = mesh.vertices[i].cast<double>();
-    if (!open[i] || cover.Covers(p)) continue;
+    if (cover.Covers(p)) continue;
     cover.Insert(p);
-    added.push_back(p);
+    uncovered.push_back(static_cast<int>(i));
   }
-  return added;
+  return uncovered;
 }
 
 /// The nodes that carry some new ones, as a graph of their own.
@@ -99,11 +78,11 @@ struct Carriers {
 };
 
 Carriers FindCarriers(const DeformationGraph& graph, const SkinningIndex& index,
-                      const std::vector<Eigen::Vector3d>& added) {
+                      const std::vector<Eigen::Vector3f>& added) {
   Carriers carriers;
   std::map<int, int> number;
-  for (const Eigen::Vector3d& g : added) {
-    Skinning skinning = index.Skin(g.cast<float>());
+  for (const Eigen::Vector3f& g : added) {
+    Skinning skinning = index.Skin(g);
     for (int k = 0; k < skinning.count; ++k) {
       const int node = skinning.nodes[k];
       const auto [entry, is_new] =
@@ -121,32 +100,59 @@ Carriers FindCarriers(const DeformationGraph& graph, const SkinningIndex& index,
 }
 
 /// Appends the motions of new nodes, blended from those of their carriers.
-void BlendNewMotions(const std::vector<Eigen::Vector3d>& added,
+void BlendNewMotions(const std::vector<Eigen::Vector3f>& added,
                      Carriers* carriers, std::vector<NodeMotion>* motions) {
   for (std::size_t i = 0; i < carriers->nodes.size(); ++i) {
     carriers->graph.motions[i] = (*motions)[carriers->nodes[i]];
   }
   const WarpField warp(carriers->graph);
   for (std::size_t i = 0; i < added.size(); ++i) {
-    motions->push_back(
-        warp.BlendMotion(carriers->skinning[i], added[i].cast<float>()));
+    motions->push_back(warp.BlendMotion(carriers->skinning[i], added[i]));
   }
 }
 
-/// Positions for new nodes, as many as there is room for; the spacing is raised
+/// Vertices for new nodes, as many as there is room for; the spacing is raised
 /// where it would be exceeded.
-std::vector<Eigen::Vector3d> NewPositions(const TriangleMesh& mesh,
-                                          const GraphOptions& options,
-                                          DeformationGraph* graph) {
-  std::vector<Eigen::Vector3d> added =
-      UncoveredPositions(mesh, *graph, graph->node_spacing);
+std::vector<int> NewNodes(const TriangleMesh& mesh, const GraphOptions& options,
+                          const std::vector<SkinningSupport>& supports,
+                          DeformationGraph* graph) {
+  std::vector<int> added =
+      UncoveredVertices(mesh, supports, graph->node_spacing);
   const int room = options.max_nodes - graph->size();
   while (static_cast<int>(added.size()) > room) {
     graph->node_spacing *= 1.1;
-    added = UncoveredPositions(mesh, *graph, graph->node_spacing);
+    added = UncoveredVertices(mesh, supports, graph->node_spacing);
     if (graph->size() > 0 && room <= 0) added.clear();
   }
   return added;
+}
+
+/// For every node the vertex nearest to it of those that have no nearer node;
+/// the new nodes are vertices.
+std::vector<NodeSeed> FindSeeds(const std::vector<SkinningSupport>& supports,
+                                int old_nodes, const std::vector<int>& added) {
+  std::vector<NodeSeed> seeds(old_nodes);
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    const float distance = supports[i].distance;
+    NodeSeed& seed = seeds[supports[i].nearest];
+    if (seed.vertex < 0 || distance < seed.distance) {
+      seed = {static_cast<int>(i), distance};
+    }
+  }
+  for (const int vertex : added) seeds.push_back({vertex, 0});
+  return seeds;
+}
+
+/// Appends nodes at vertices of the mesh and ties all nodes anew.
+void AddNodes(const TriangleMesh& mesh, const GraphOptions& options,
+              const std::vector<SkinningSupport>& supports,
+              const std::vector<int>& added, DeformationGraph* graph) {
+  const std::vector<NodeSeed> seeds = FindSeeds(supports, graph->size(), added);
+  for (const int vertex : added) {
+    graph->positions.push_back(mesh.vertices[vertex].cast<double>());
+  }
+  graph->neighbors = ConnectAlongSurface(graph->positions, seeds, mesh,
+                                         options.neighbors_per_node);
 }
 
 }  // namespace
@@ -181,36 +187,37 @@ double NodeSpacing(const GraphOptions& options, double depth) {
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               DeformationGraph* graph, MotionHistory* history) {
   if (graph->size() > 0) {
-    return GrowGraph(canonical_mesh, options,
-                     SkinningIndex(*graph, options.neighbors_per_point), graph,
+    const SkinningIndex index(*graph, options.neighbors_per_point);
+    const MeshSkinning skinning(index, canonical_mesh.vertices);
+    return GrowGraph(canonical_mesh, options, index, skinning.supports(), graph,
                      history);
   }
-  const std::vector<Eigen::Vector3d> nodes =
-      NewPositions(canonical_mesh, options, graph);
-  graph->positions = nodes;
-  graph->motions.resize(nodes.size());
-  graph->neighbors = ConnectAlongSurface(graph->positions, canonical_mesh,
-                                         options.neighbors_per_node);
+  const std::vector<int> added = NewNodes(canonical_mesh, options, {}, graph);
+  graph->motions.resize(added.size());
+  AddNodes(canonical_mesh, options, {}, added, graph);
   return graph->size();
 }
 
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
-              const SkinningIndex& index, DeformationGraph* graph,
-              MotionHistory* history) {
-  const std::vector<Eigen::Vector3d> added =
-      NewPositions(canonical_mesh, options, graph);
+              const SkinningIndex& index,
+              const std::vector<SkinningSupport>& supports,
+              DeformationGraph* graph, MotionHistory* history) {
+  const std::vector<int> added =
+      NewNodes(canonical_mesh, options, supports, graph);
   const auto count = static_cast<double>(added.size());
   if (added.empty() || count < options.growth_batch * graph->size()) return 0;
-  Carriers carriers = FindCarriers(*graph, index, added);
-  BlendNewMotions(added, &carriers, &graph->motions);
+  std::vector<Eigen::Vector3f> places;
+  for (const int vertex : added) {
+    places.push_back(canonical_mesh.vertices[vertex]);
+  }
+  Carriers carriers = FindCarriers(*graph, index, places);
+  BlendNewMotions(places, &carriers, &graph->motions);
   if (history != nullptr) {
     for (FrameMotions& frame : history->frames) {
-      BlendNewMotions(added, &carriers, &frame.motions);
+      BlendNewMotions(places, &carriers, &frame.motions);
     }
   }
-  graph->positions.insert(graph->positions.end(), added.begin(), added.end());
-  graph->neighbors = ConnectAlongSurface(graph->positions, canonical_mesh,
-                                         options.neighbors_per_node);
+  AddNodes(canonical_mesh, options, supports, added, graph);
   return static_cast<int>(added.size());
 }
 

@@ -44,10 +44,12 @@ double NodeSpacing(const GraphOptions& options, double depth);
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               DeformationGraph* graph, MotionHistory* history);
 
-/// The same, given the skinning by the graph as it is.
+/// The same, given the skinning by the graph as it is and what that of every
+/// vertex hangs on.
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
-              const SkinningIndex& index, DeformationGraph* graph,
-              MotionHistory* history);
+              const SkinningIndex& index,
+              const std::vector<SkinningSupport>& supports,
+              DeformationGraph* graph, MotionHistory* history);
 
 }  // namespace splitfusion
 

@@ -131,20 +131,23 @@ SkinningIndex::SkinningIndex(const DeformationGraph& graph,
 }
 
 Skinning SkinningIndex::Skin(const Eigen::Vector3f& point) const {
-  int nearest = -1;
-  return Skin(point, &nearest);
+  SkinningSupport support;
+  return Skin(point, &support);
 }
 
-Skinning SkinningIndex::Skin(const Eigen::Vector3f& point, int* nearest) const {
+Skinning SkinningIndex::Skin(const Eigen::Vector3f& point,
+                             SkinningSupport* support) const {
   float distance = 0;
-  *nearest = tree_.Find(point, *nearest, &distance);
+  support->nearest = tree_.Find(point, support->nearest, &distance);
+  support->distance = distance;
+  support->reach = std::numeric_limits<float>::infinity();
   Skinning skinning;
   if (node_count_ == 1) {
     skinning.count = 1;
     skinning.weights[0] = 1;
     return skinning;
   }
-  const CandidateList& list = candidates_[*nearest];
+  const CandidateList& list = candidates_[support->nearest];
   const int count = static_cast<int>(list.nodes.size());
   const int used = std::min(k_, count);
   NearestFew few(std::min(used + 1, count));
@@ -156,6 +159,7 @@ Skinning SkinningIndex::Skin(const Eigen::Vector3f& point, int* nearest) const {
     const float dz = list.z[i] - point.z();
     few.Insert(dx * dx + (dy * dy + dz * dz), list.nodes[i]);
   }
+  if (count > used) support->reach = few.Reach(distance);
   const float farthest = std::sqrt(few.FarthestSquared());
   const float d_max = count > used ? farthest : 2 * farthest;
   few.SortByNode(used);
@@ -177,13 +181,28 @@ std::vector<Skinning> SkinningIndex::Skin(
   std::vector<Skinning> skinnings(points.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 1024),
                     [&](const tbb::blocked_range<std::size_t>& range) {
-                      int nearest = -1;
+                      SkinningSupport support;
                       for (std::size_t i = range.begin(); i < range.end();
                            ++i) {
-                        skinnings[i] = Skin(points[i], &nearest);
+                        skinnings[i] = Skin(points[i], &support);
                       }
                     });
   return skinnings;
+}
+
+float SkinningIndex::FirstDifference(const SkinningIndex& before,
+                                     const SkinningIndex& after, int node) {
+  // Both are in the order of their distances.
+  const CandidateList& a = before.candidates_[node];
+  const CandidateList& b = after.candidates_[node];
+  const auto [i, j] = std::mismatch(a.nodes.begin(), a.nodes.end(),
+                                    b.nodes.begin(), b.nodes.end());
+  float first = std::numeric_limits<float>::infinity();
+  if (i != a.nodes.end()) first = a.distance[i - a.nodes.begin()];
+  if (j != b.nodes.end()) {
+    first = std::min(first, b.distance[j - b.nodes.begin()]);
+  }
+  return first;
 }
 
 WarpField::WarpField(const DeformationGraph& graph) {

@@ -22,6 +22,14 @@ struct Skinning {
   int count = 0;                                        ///< Nodes used.
 };
 
+/// What the skinning of a point hangs on.
+struct SkinningSupport {
+  int nearest = -1;    ///< The nearest node; -1 = not known.
+  float distance = 0;  ///< Of the point from it, metres.
+  /// Nodes farther than this from the nearest one do not matter, metres.
+  float reach = 0;
+};
+
 /// Finds the skinning of points (SplitFusion Eq. 3): the K nearest nodes,
 /// w = (1 - |v - g_i| / d_max)^2 normalised, d_max = distance to the (K+1)-th.
 /// With fewer than K+1 nodes all are used with d_max = twice the distance to
@@ -40,9 +48,9 @@ class SkinningIndex {
   /// Skinning of a canonical point (metres). Thread-safe.
   Skinning Skin(const Eigen::Vector3f& point) const;
 
-  /// The same, faster after a point nearby: `nearest` is a node that may be
-  /// near (-1 = unknown) and becomes the point's nearest one.
-  Skinning Skin(const Eigen::Vector3f& point, int* nearest) const;
+  /// The same, faster after a point nearby: `support` is that point's (or not
+  /// known) and becomes this one's.
+  Skinning Skin(const Eigen::Vector3f& point, SkinningSupport* support) const;
 
   /// Skinning of many canonical points, in parallel.
   std::vector<Skinning> Skin(const std::vector<Eigen::Vector3f>& points) const;
@@ -51,6 +59,15 @@ class SkinningIndex {
   int NearestNode(const Eigen::Vector3f& point, float* distance) const {
     return tree_.Find(point, -1, distance);
   }
+
+  /// Number of nodes.
+  int node_count() const { return node_count_; }
+
+  /// How far the nodes are, metres, that may carry the points nearest to `node`
+  /// by one of two indices of the same graph but not by the other; infinity if
+  /// there is no difference.
+  static float FirstDifference(const SkinningIndex& before,
+                               const SkinningIndex& after, int node);
 
  private:
   /// The nodes that may carry the points nearest to one node, by their distance

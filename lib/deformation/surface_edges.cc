@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "splitfusion/lib/geometry/kd_tree.h"
-#include "splitfusion/lib/geometry/nearest_point.h"
 
 namespace splitfusion {
 namespace {
@@ -90,18 +89,16 @@ float EdgeLength(const TriangleMesh& mesh) {
   return sum > 0 ? sum / static_cast<float>(count) : 1.0f;
 }
 
-Regions GrowRegions(const std::vector<Eigen::Vector3d>& nodes,
+Regions GrowRegions(const std::vector<NodeSeed>& seeds,
                     const TriangleMesh& mesh, const MeshGraph& graph) {
   Regions regions;
   regions.node.assign(mesh.vertices.size(), -1);
   regions.distance.assign(mesh.vertices.size(),
                           std::numeric_limits<float>::max());
   DistanceQueue queue(EdgeLength(mesh));
-  const NearestPoint vertex_tree(mesh.vertices);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    float distance = 0;
-    const int vertex = vertex_tree.Find(nodes[i].cast<float>(), -1, &distance);
-    if (distance >= regions.distance[vertex]) continue;
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    const auto [vertex, distance] = seeds[i];
+    if (vertex < 0 || distance >= regions.distance[vertex]) continue;
     regions.distance[vertex] = distance;
     regions.node[vertex] = static_cast<int>(i);
     queue.Push(distance, vertex);
@@ -216,10 +213,10 @@ void TieParts(const std::vector<Eigen::Vector3d>& nodes,
 }  // namespace
 
 std::vector<std::vector<int>> ConnectAlongSurface(
-    const std::vector<Eigen::Vector3d>& nodes, const TriangleMesh& mesh,
-    int count) {
+    const std::vector<Eigen::Vector3d>& nodes,
+    const std::vector<NodeSeed>& seeds, const TriangleMesh& mesh, int count) {
   const Lengths lengths = WithSecondRing(AdjacentRegions(
-      GrowRegions(nodes, mesh, BuildMeshGraph(mesh)), mesh, nodes.size()));
+      GrowRegions(seeds, mesh, BuildMeshGraph(mesh)), mesh, nodes.size()));
   std::vector<std::set<int>> edges(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     std::vector<std::pair<float, int>> order;

@@ -8,6 +8,12 @@
 
 namespace splitfusion {
 
+/// The vertex of a mesh next to a node.
+struct NodeSeed {
+  int vertex = -1;     ///< -1 = none.
+  float distance = 0;  ///< Of the node from it, metres.
+};
+
 /// Neighbours of every node along the surface of a mesh, ascending.
 ///
 /// Every vertex is given to the node nearest to it along the mesh (one
@@ -17,10 +23,11 @@ namespace splitfusion {
 /// an edge. Nodes of a separate piece of the mesh are tied to the nearest nodes
 /// in space, so that the graph has no loose parts.
 ///
-/// `nodes`: canonical positions, metres, each near a vertex of the mesh.
+/// `nodes`: canonical positions, metres; `seeds`: where the search from each of
+/// them begins; a node without is a piece by itself.
 std::vector<std::vector<int>> ConnectAlongSurface(
-    const std::vector<Eigen::Vector3d>& nodes, const TriangleMesh& mesh,
-    int count);
+    const std::vector<Eigen::Vector3d>& nodes,
+    const std::vector<NodeSeed>& seeds, const TriangleMesh& mesh, int count);
 
 }  // namespace splitfusion
 

@@ -34,12 +34,18 @@ struct LatticeIndex {
   int x, y, z;
 };
 
+struct SkinnedPoint {
+  int lattice_index = 0;
+  Skinning skinning;
+  SkinningSupport support;
+};
+
 /// Skinning of a block's lattice.
 struct LeafLattice {
   bool attached = false;  // Some node is near enough.
-  std::array<Skinning, kOwnPoints> own;
+  std::array<SkinnedPoint, kOwnPoints> own;
   /// Points whose owner is not there or not attached.
-  std::vector<std::pair<int, Skinning>> border;
+  std::vector<SkinnedPoint> border;
 };
 
 /// A block and those that own its lattice, see LatticeIndex::owner(); -1: not
@@ -55,33 +61,55 @@ Eigen::Vector3f LatticePoint(const openvdb::Coord& origin, float voxel,
                                  static_cast<float>(origin.z() + kCell * at.z));
 }
 
+/// Skins a point of a block; `support`: of the point before.
+SkinnedPoint SkinPoint(const openvdb::Coord& origin, float voxel,
+                       const SkinningIndex& index, int lattice_index,
+                       SkinningSupport* support) {
+  SkinnedPoint point;
+  point.lattice_index = lattice_index;
+  point.skinning = index.Skin(
+      LatticePoint(origin, voxel, LatticeIndex(lattice_index)), support);
+  point.support = *support;
+  return point;
+}
+
 /// Skins the points that a block owns.
 void SkinOwn(const openvdb::Coord& origin, float voxel, float reach,
              const SkinningIndex& index, LeafLattice* lattice) {
   const LatticeIndex center(kLatticePoints / 2);
   const float half_diagonal = 0.87f * voxel * kLeafSize;
   float distance = 0;
-  int nearest =
+  SkinningSupport support;
+  support.nearest =
       index.NearestNode(LatticePoint(origin, voxel, center), &distance);
   lattice->attached = distance < reach + half_diagonal;
   if (!lattice->attached) return;
   for (int i = 0; i < kLatticePoints; ++i) {
     const LatticeIndex at(i);
     if (at.owner() != 0) continue;
-    lattice->own[at.own()] =
-        index.Skin(LatticePoint(origin, voxel, at), &nearest);
+    lattice->own[at.own()] = SkinPoint(origin, voxel, index, i, &support);
   }
 }
 
 /// Skins the points of a block that have no owner.
 void SkinBorder(const openvdb::Coord& origin, float voxel, const Owners& owners,
                 const SkinningIndex& index, LeafLattice* lattice) {
-  int nearest = -1;
+  SkinningSupport support;
   for (int i = 0; i < kLatticePoints && lattice->attached; ++i) {
-    const LatticeIndex at(i);
-    if (owners[at.owner()] >= 0) continue;
-    lattice->border.emplace_back(
-        i, index.Skin(LatticePoint(origin, voxel, at), &nearest));
+    if (owners[LatticeIndex(i).owner()] >= 0) continue;
+    lattice->border.push_back(SkinPoint(origin, voxel, index, i, &support));
+  }
+}
+
+/// Skins those points again that a change of the graph does not keep.
+template <typename Points>
+void FollowPoints(const openvdb::Coord& origin, float voxel,
+                  const SkinningIndex& index, const SkinningChange& change,
+                  Points* points) {
+  SkinningSupport support;
+  for (SkinnedPoint& point : *points) {
+    if (change.Keeps(point.support)) continue;
+    point = SkinPoint(origin, voxel, index, point.lattice_index, &support);
   }
 }
 
@@ -92,8 +120,8 @@ OwnPoints WarpOwn(const openvdb::Coord& origin, float voxel,
   for (int i = 0; i < kLatticePoints && lattice.attached; ++i) {
     const LatticeIndex at(i);
     if (at.owner() != 0) continue;
-    warped[at.own()] =
-        warp.WarpPoint(lattice.own[at.own()], LatticePoint(origin, voxel, at));
+    warped[at.own()] = warp.WarpPoint(lattice.own[at.own()].skinning,
+                                      LatticePoint(origin, voxel, at));
   }
   return warped;
 }
@@ -109,9 +137,10 @@ WarpedLattice GatherLattice(const openvdb::Coord& origin, float voxel,
     const int owner = owners[at.owner()];
     if (owner >= 0) warped[i] = own[owner][at.own()];
   }
-  for (const auto& [i, skinning] : lattice.border) {
-    warped[i] =
-        warp.WarpPoint(skinning, LatticePoint(origin, voxel, LatticeIndex(i)));
+  for (const SkinnedPoint& point : lattice.border) {
+    warped[point.lattice_index] = warp.WarpPoint(
+        point.skinning,
+        LatticePoint(origin, voxel, LatticeIndex(point.lattice_index)));
   }
   return warped;
 }
@@ -210,7 +239,25 @@ WarpedIntegrator::WarpedIntegrator(WarpedIntegrator&&) noexcept = default;
 WarpedIntegrator& WarpedIntegrator::operator=(WarpedIntegrator&&) noexcept =
     default;
 
-void WarpedIntegrator::InvalidateSkinning() { cache_->lattices.clear(); }
+void WarpedIntegrator::FollowGraph(const SkinningIndex& index,
+                                   const SkinningChange& change,
+                                   const TsdfVolume& volume) {
+  const float voxel = static_cast<float>(volume.options().voxel_size);
+  std::vector<std::pair<const openvdb::Coord, LeafLattice>*> attached;
+  for (auto entry = cache_->lattices.begin();
+       entry != cache_->lattices.end();) {
+    if (entry->second.attached) {
+      attached.push_back(&*entry++);
+    } else {
+      entry = cache_->lattices.erase(entry);  // A new node may be near enough.
+    }
+  }
+  tbb::parallel_for(std::size_t{0}, attached.size(), [&](std::size_t i) {
+    auto& [origin, lattice] = *attached[i];
+    FollowPoints(origin, voxel, index, change, &lattice.own);
+    FollowPoints(origin, voxel, index, change, &lattice.border);
+  });
+}
 
 void WarpedIntegrator::Integrate(const DepthObservation& observation,
                                  const SkinningIndex& index,

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/deformation/skinning_change.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
 namespace splitfusion {
@@ -15,7 +16,7 @@ namespace splitfusion {
 /// Within a block the warp is evaluated by Eq. 2 on a lattice of every fourth
 /// voxel and interpolated trilinearly in between: over 4 voxels (2 cm) the
 /// blend of neighbouring nodes is linear up to a fraction of a millimetre. The
-/// lattice's skinning is kept between frames and made anew when the graph has
+/// lattice's skinning is kept between frames and made anew where the graph has
 /// changed.
 class WarpedIntegrator {
  public:
@@ -26,8 +27,10 @@ class WarpedIntegrator {
   /// Takes the skinning over.
   WarpedIntegrator& operator=(WarpedIntegrator&&) noexcept;
 
-  /// Forgets all skinning; to be called when the graph has grown.
-  void InvalidateSkinning();
+  /// To be called when the graph has changed: renews the skinning that `change`
+  /// does not keep. `index`: the one after it.
+  void FollowGraph(const SkinningIndex& index, const SkinningChange& change,
+                   const TsdfVolume& volume);
 
   /// Fuses one observation. Blocks farther than `reach` (metres) from every
   /// node are left alone.

@@ -35,8 +35,9 @@ class CanonicalPlacesTest : public ::testing::Test {
     return FindCanonicalPlaces(live_, 1, graph_, vertices, warped, limits_);
   }
 
+  /// The live point that a pixel's place is that of.
   Eigen::Vector3d Live(int u, int v) const {
-    const cv::Vec3f& p = live_.map.points(v, u);
+    const cv::Vec3f& p = live_.map.points(v & ~1, u & ~1);
     return {p[0], p[1], p[2]};
   }
 
@@ -109,6 +110,25 @@ TEST_F(CanonicalPlacesTest, OtherSurfacesAndWhatIsUncertainHaveNone) {
       const bool none = u < 80 || (u >= 100 && u < 130);
       EXPECT_EQ(At(found, u, v) == Coverage::kNone, none);
       EXPECT_EQ(std::isnan(found.points(v, u)[0]), none);
+    }
+  }
+}
+
+TEST_F(CanonicalPlacesTest, WhatNoLivePointIsNearMakesNoDifference) {
+  std::vector<Eigen::Vector3f> vertices = plate_.vertices;
+  for (const Eigen::Vector3f& v : plate_.vertices) {
+    vertices.push_back(v + Eigen::Vector3f(0, 0, 0.02f));  // Behind.
+    vertices.push_back(v - Eigen::Vector3f(0, 0, 0.3f));   // In front.
+    vertices.push_back(v + Eigen::Vector3f(5, 0, 0));      // Beside.
+    vertices.push_back(v - Eigen::Vector3f(0, 0, 2.0f));   // Out of view.
+  }
+  const CanonicalPlaces expected = Find();
+  const CanonicalPlaces found = Find(vertices);
+  EXPECT_EQ(cv::countNonZero(found.coverage != expected.coverage), 0);
+  for (int v = 0; v < 120; ++v) {
+    for (int u = 80; u < 160; ++u) {
+      if (At(found, u, v) != Coverage::kModelled) continue;
+      EXPECT_EQ(found.points(v, u), expected.points(v, u));
     }
   }
 }

@@ -243,18 +243,18 @@ TEST(Skinning, IsThatOfEquationThreeWhateverWasAskedBefore) {
   });
   const DeformationGraph graph = CoverWithNodes(mesh, 0.04);
   const SkinningIndex index(graph, 6);
-  int hint = -1;
+  SkinningSupport support;
   for (std::size_t i = 0; i < mesh.vertices.size(); i += 3) {
     const Eigen::Vector3f point =
         mesh.vertices[i] + Eigen::Vector3f(0.003f, -0.002f, 0.01f * (i % 4));
     const Skinning expected = SkinByHand(graph, 6, point);
     for (const Skinning& skinning :
-         {index.Skin(point), index.Skin(point, &hint)}) {
+         {index.Skin(point), index.Skin(point, &support)}) {
       EXPECT_EQ(skinning.count, expected.count);
       EXPECT_EQ(skinning.nodes, expected.nodes);
       EXPECT_EQ(skinning.weights, expected.weights);
     }
-    EXPECT_EQ(hint, index.NearestNode(point, nullptr));
+    EXPECT_EQ(support.nearest, index.NearestNode(point, nullptr));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "splitfusion/lib/geometry/nearest_point.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 
@@ -11,6 +12,19 @@ namespace splitfusion {
 namespace {
 
 using Neighbors = std::vector<std::vector<int>>;
+
+/// Edges of nodes that begin at the vertices nearest to them.
+Neighbors Connect(const std::vector<Eigen::Vector3d>& nodes,
+                  const TriangleMesh& mesh, int count) {
+  std::vector<NodeSeed> seeds;
+  const NearestPoint vertices(mesh.vertices);
+  for (const Eigen::Vector3d& g : nodes) {
+    NodeSeed seed;
+    seed.vertex = vertices.Find(g.cast<float>(), -1, &seed.distance);
+    seeds.push_back(seed);
+  }
+  return ConnectAlongSurface(nodes, seeds, mesh, count);
+}
 
 bool Contains(const std::vector<int>& list, int value) {
   return std::binary_search(list.begin(), list.end(), value);
@@ -107,18 +121,28 @@ TEST(SurfaceEdges, FewNodesAreTiedToAllOthers) {
   const TriangleMesh mesh = PlateMesh(0.1, 0.1, 0.01, 1);
   const std::vector<Eigen::Vector3d> nodes = {
       {0, 0, 1}, {0.1, 0, 1}, {0.1, 0.1, 1}};
-  const Neighbors neighbors = ConnectAlongSurface(nodes, mesh, 8);
+  const Neighbors neighbors = Connect(nodes, mesh, 8);
   EXPECT_EQ(neighbors, (Neighbors{{1, 2}, {0, 2}, {0, 1}}));
-  EXPECT_EQ(ConnectAlongSurface({nodes[0]}, mesh, 8), Neighbors(1));
+  EXPECT_EQ(Connect({nodes[0]}, mesh, 8), Neighbors(1));
 }
 
 TEST(SurfaceEdges, TwoNodesAtOneVertexAreBothTied) {
   const TriangleMesh mesh = PlateMesh(0.2, 0.1, 0.01, 1);
   const std::vector<Eigen::Vector3d> nodes = {
       {0, 0, 1}, {0.001, 0, 1}, {0.1, 0, 1}, {0.2, 0.1, 1}, {0.1, 0.1, 1}};
-  for (const std::vector<int>& row : ConnectAlongSurface(nodes, mesh, 8)) {
+  for (const std::vector<int>& row : Connect(nodes, mesh, 8)) {
     EXPECT_GE(row.size(), 3u);
   }
+}
+
+TEST(SurfaceEdges, ANodeWithoutASeedIsTiedToThoseNearInSpace) {
+  const TriangleMesh mesh = PlateMesh(0.2, 0.1, 0.01, 1);
+  const std::vector<Eigen::Vector3d> nodes = {
+      {0, 0, 1}, {0.05, 0, 1}, {0.1, 0, 1}, {0.15, 0, 1}, {0.2, 0, 1.2}};
+  std::vector<NodeSeed> seeds(5);
+  for (int i = 0; i < 4; ++i) seeds[i] = {5 * i, 0};
+  EXPECT_EQ(ConnectAlongSurface(nodes, seeds, mesh, 8)[4],
+            (std::vector<int>{1, 2, 3}));
 }
 
 TEST(SurfaceEdges, CountLimitsTheEdgesOfANode) {
@@ -126,7 +150,7 @@ TEST(SurfaceEdges, CountLimitsTheEdgesOfANode) {
   const DeformationGraph graph = CoverWithNodes(mesh, 0.04);
   const auto mean_edges = [&](int count) {
     std::size_t edges = 0;
-    for (const auto& row : ConnectAlongSurface(graph.positions, mesh, count)) {
+    for (const auto& row : Connect(graph.positions, mesh, count)) {
       edges += row.size();
     }
     return static_cast<double>(edges) / graph.size();
