@@ -7,18 +7,13 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "splitfusion/lib/association/depth_edges.h"
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
 namespace {
 
 constexpr int kEdgeRadius = 2;  // Pixels.
-
-/// Jump of depth between pixels `step` apart that is an edge: more than noise
-/// or a surface seen at 79 degrees (tan = 5) gives.
-float EdgeJump(float depth, int step, float focal_length) {
-  return 0.005f + 3 * DepthSigma(depth) + 5 * depth * step / focal_length;
-}
 
 /// Fills pixels without depth whose neighbours agree: single lost pixels would
 /// leave holes as wide as a voxel where the camera stands still.
@@ -58,26 +53,14 @@ GreyLevel MakeGreyLevel(const cv::Mat& grey, double sigma) {
 /// 255 where a pixel lies next to a jump of depth (either side of it).
 cv::Mat_<std::uint8_t> DepthEdges(const cv::Mat_<float>& depth,
                                   float focal_length) {
-  const auto differ = [&](float z, int v, int u, int step) {
-    if (v < 0 || u < 0 || v >= depth.rows || u >= depth.cols) return false;
-    const float other = depth(v, u);
-    return other > 0 && std::abs(other - z) >
-                            EdgeJump(std::min(z, other), step, focal_length);
-  };
-  cv::Mat_<std::uint8_t> edges(depth.size(), 0);
+  cv::Mat_<float> bordered;
+  cv::copyMakeBorder(depth, bordered, kEdgeBorder, kEdgeBorder, kEdgeBorder,
+                     kEdgeBorder, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::Mat_<std::uint8_t> edges(depth.size());
   tbb::parallel_for(0, depth.rows, [&](int v) {
-    for (int u = 0; u < depth.cols; ++u) {
-      const float z = depth(v, u);
-      if (!(z > 0)) continue;
-      bool is_edge = false;
-      // Two pixels away too: edges come with a column of holes.
-      for (int step = 1; step <= 2 && !is_edge; ++step) {
-        is_edge = differ(z, v, u - step, step) ||
-                  differ(z, v, u + step, step) ||
-                  differ(z, v - step, u, step) || differ(z, v + step, u, step);
-      }
-      if (is_edge) edges(v, u) = 255;
-    }
+    MarkEdges(bordered[v + kEdgeBorder] + kEdgeBorder,
+              static_cast<int>(bordered.step1()), depth.cols, focal_length,
+              edges[v]);
   });
   cv::Mat_<std::uint8_t> wide;
   const int size = 2 * (kEdgeRadius - 1) + 1;
@@ -134,8 +117,13 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
 std::map<int, int> PixelsOfSurfaces(const LiveView& live) {
   std::map<int, int> counts;
   for (int v = 0; v < live.depth.rows; ++v) {
-    for (int u = 0; u < live.depth.cols; ++u) {
-      if (live.depth(v, u) > 0) ++counts[live.labels(v, u)];
+    for (int u = 0; u < live.depth.cols;) {
+      const int label = live.labels(v, u);
+      int count = 0;
+      for (; u < live.depth.cols && live.labels(v, u) == label; ++u) {
+        count += live.depth(v, u) > 0;
+      }
+      if (count > 0) counts[label] += count;
     }
   }
   return counts;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "splitfusion/lib/base/error.h"
 
@@ -186,12 +187,15 @@ Association Associate(const std::vector<ModelSample>& samples,
                       }
                     });
   Association association;
+  std::size_t accepted = 0;
   for (std::size_t i = 0; i < used.size(); ++i) {
     Count(outcomes[i], &association.counts);
-    if (outcomes[i] == Outcome::kAccepted) {
-      association.correspondences.push_back(matches[i]);
-    }
+    if (outcomes[i] != Outcome::kAccepted) continue;
+    if (accepted < i) matches[accepted] = matches[i];
+    ++accepted;
   }
+  matches.resize(accepted);
+  association.correspondences = std::move(matches);
   RemoveCommonBrightness(&association.correspondences);
   return association;
 }

@@ -2,7 +2,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <opencv2/core.hpp>
 
@@ -11,30 +10,6 @@
 
 namespace splitfusion {
 namespace {
-
-/// Normal of the plane a u + b v + c = 1 / z fitted to inverse depth, not
-/// normalised. A plane of space is linear in (u, v, 1/z), so that the fit has
-/// no bias on slopes: n . X = d with X = z ((u-cx)/fx, (v-cy)/fy, 1) gives
-/// 1/z = (n_x (u-cx)/fx + n_y (v-cy)/fy + n_z) / d.
-///
-/// `x0`, `y0`: normalised image coordinates of the window's centre. False if
-/// the points lie on a line.
-bool FitPlane(const WindowSums& s, float x0, float y0,
-              Eigen::Vector3f* normal) {
-  const float n = s.count;
-  const float cxx = s.xx - s.x * s.x / n;
-  const float cxy = s.xy - s.x * s.y / n;
-  const float cyy = s.yy - s.y * s.y / n;
-  const float cxz = s.xz - s.x * s.z / n;
-  const float cyz = s.yz - s.y * s.z / n;
-  const float determinant = cxx * cyy - cxy * cxy;
-  if (!(determinant > 1e-4f * cxx * cyy)) return false;
-  const float a = (cxz * cyy - cyz * cxy) / determinant;
-  const float b = (cyz * cxx - cxz * cxy) / determinant;
-  const float c = (s.z - a * s.x - b * s.y) / n;
-  *normal = Eigen::Vector3f(a, b, c - a * x0 - b * y0);
-  return true;
-}
 
 class NormalEstimator {
  public:
@@ -65,15 +40,25 @@ class NormalEstimator {
       const float* depth = depth_[v + radius] + u + radius;
       float gates[kWindowPixels];
       for (int i = 0; i < kWindowPixels; ++i) gates[i] = Gate(depth[i]);
-      WindowSums sums[kWindowPixels];
+      WindowSums sums;
       SumWindows(
           {depth_[v] + u, inverse_depth_[v] + u,
            static_cast<int>(depth_.step1()), radius, inverse_fx_, inverse_fy_},
-          depth, gates, sums);
+          depth, gates, &sums);
+      WindowCenters centers;
+      for (int i = 0; i < kWindowPixels; ++i) {
+        centers.x[i] = (u + i - cx_) * inverse_fx_;
+      }
+      centers.y = (v - cy_) * inverse_fy_;
+      // A third of the window: thinner support is an edge or a speck.
+      const int side = 2 * radius + 1;
+      WindowNormals fitted;
+      FitWindowPlanes(sums, centers, (side * side + 2) / 3, &fitted);
       const int count = std::min(kWindowPixels, width_ - u);
       for (int i = 0; i < count; ++i) {
-        normals[u + i] =
-            depth[i] > 0 ? Normal(u + i, v, sums[i]) : cv::Vec3f(0, 0, 0);
+        normals[u + i] = depth[i] > 0
+                             ? cv::Vec3f(fitted.x[i], fitted.y[i], fitted.z[i])
+                             : cv::Vec3f(0, 0, 0);
       }
     }
   }
@@ -85,20 +70,6 @@ class NormalEstimator {
     return std::min(0.9f * z,
                     static_cast<float>(options_.edge_factor * DepthSigma(z) +
                                        options_.edge_offset));
-  }
-
-  cv::Vec3f Normal(int u, int v, const WindowSums& sums) const {
-    // A third of the window: thinner support is an edge or a speck.
-    const int side = 2 * options_.normal_radius + 1;
-    Eigen::Vector3f normal;
-    if (3 * static_cast<int>(sums.count) < side * side ||
-        !FitPlane(sums, (u - cx_) * inverse_fx_, (v - cy_) * inverse_fy_,
-                  &normal)) {
-      return {0, 0, 0};
-    }
-    normal.normalize();
-    // n . X = d > 0 points away from the camera: turn it round.
-    return {-normal.x(), -normal.y(), -normal.z()};
   }
 
   const PointMapOptions& options_;

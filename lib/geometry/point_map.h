@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/geometry/camera.h"
+#include "splitfusion/lib/geometry/depth_noise.h"
 
 namespace splitfusion {
 
@@ -27,15 +28,6 @@ struct PointMapOptions {
   /// @throw InputError if a value is out of its range.
   void Check() const;
 };
-
-/// Axial noise of a structured-light camera at z-depth `depth` (both metres):
-/// sigma = 0.0012 + 0.0019 (z - 0.4)^2 (Nguyen et al. 2012). It sets weights
-/// and edge thresholds; its shape matters, its scale does not.
-template <typename T>
-T DepthSigma(T depth) {
-  const T d = depth - T(0.4);
-  return T(0.0012) + T(0.0019) * d * d;
-}
 
 /// Lifts an HxW 32FC1 depth image (metres, 0 = none) to points, and fits a
 /// plane around every pixel for its normal.

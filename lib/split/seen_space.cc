@@ -1,5 +1,7 @@
 #include "splitfusion/lib/split/seen_space.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <cstddef>
 #include <opencv2/imgproc.hpp>
@@ -56,17 +58,22 @@ cv::Mat_<uchar> SeenSpace::WasEmpty(const cv::Mat_<uchar>& mask,
   cv::Mat_<uchar> empty(mask.size(), uchar(0));
   const cv::Rect box = cv::boundingRect(mask);
   const Rigid3f world_from_live = world_from_camera.cast<float>();
+  std::vector<Rigid3f> view_from_live;
   for (const View& view : views_) {
-    const Rigid3f view_from_live = view.camera_from_world * world_from_live;
-    for (int v = box.y; v < box.br().y; ++v) {
-      for (int u = box.x; u < box.br().x; ++u) {
-        const cv::Vec3f& p = points.points(v, u);
-        if (!mask(v, u) || empty(v, u) || p[2] <= 0) continue;
-        const Eigen::Vector3f point(p[0], p[1], p[2]);
-        if (LookedThrough(view, view_from_live * point)) empty(v, u) = 255;
+    view_from_live.push_back(view.camera_from_world * world_from_live);
+  }
+  tbb::parallel_for(box.y, box.br().y, [&](int v) {
+    for (int u = box.x; u < box.br().x; ++u) {
+      const cv::Vec3f& p = points.points(v, u);
+      if (!mask(v, u) || p[2] <= 0) continue;
+      const Eigen::Vector3f point(p[0], p[1], p[2]);
+      for (std::size_t i = 0; i < views_.size() && !empty(v, u); ++i) {
+        if (LookedThrough(views_[i], view_from_live[i] * point)) {
+          empty(v, u) = 255;
+        }
       }
     }
-  }
+  });
   return empty;
 }
 

@@ -95,21 +95,21 @@ TEST(SumWindows, CountsThePixelsAtTheCentresDepth) {
   }
   std::vector<float> gate(kWindowPixels, 0.015f);
   gate[3] = 0.005f;  // Only its own column.
-  WindowSums sums[kWindowPixels];
+  WindowSums sums;
   SumWindows({depth.data(), inverse.data(), kStride, kRadius, 0.5f, 0.25f},
-             &depth[2 * kStride + kRadius], gate.data(), sums);
+             &depth[2 * kStride + kRadius], gate.data(), &sums);
   for (int i = 0; i < kWindowPixels; ++i) {
     const int columns = i == 3 ? 1 : 3;
     const float center = 1 / (1 + 0.01f * (i + kRadius));
-    EXPECT_EQ(sums[i].count, 3 * columns);
-    EXPECT_EQ(sums[i].x, 0);
-    EXPECT_EQ(sums[i].y, 0);
-    EXPECT_EQ(sums[i].xx, i == 3 ? 0 : 6 * 0.25f);
-    EXPECT_EQ(sums[i].yy, 2 * columns * 0.0625f);
-    EXPECT_EQ(sums[i].xy, 0);
-    EXPECT_NEAR(sums[i].z, 3 * columns * center, 1e-3);
-    EXPECT_NEAR(sums[i].yz, 0, 1e-6);
-    EXPECT_TRUE(i == 3 ? sums[i].xz == 0 : sums[i].xz < 0);
+    EXPECT_EQ(sums.count[i], 3 * columns);
+    EXPECT_EQ(sums.x[i], 0);
+    EXPECT_EQ(sums.y[i], 0);
+    EXPECT_EQ(sums.xx[i], i == 3 ? 0 : 6 * 0.25f);
+    EXPECT_EQ(sums.yy[i], 2 * columns * 0.0625f);
+    EXPECT_EQ(sums.xy[i], 0);
+    EXPECT_NEAR(sums.z[i], 3 * columns * center, 1e-3);
+    EXPECT_NEAR(sums.yz[i], 0, 1e-6);
+    EXPECT_TRUE(i == 3 ? sums.xz[i] == 0 : sums.xz[i] < 0);
   }
 }
 
