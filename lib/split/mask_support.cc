@@ -11,6 +11,15 @@ constexpr double kNewest = 0.25;  // Weight of the newest detection.
 constexpr float kUnknown = 0.5f;  // Support before the first detection.
 constexpr int kReach = 7;         // Pixels over which the support is spread.
 
+/// Where pixels moved by `shift`, and what they are spread over, may be.
+cv::Rect ReachOf(const cv::Mat_<uchar>& pixels, const cv::Point2d& shift) {
+  cv::Rect box = cv::boundingRect(pixels);
+  constexpr int kMargin = kReach + 2;  // Rounding included.
+  box += cv::Point(cvFloor(shift.x) - kMargin, cvFloor(shift.y) - kMargin);
+  box += cv::Size(2 * kMargin, 2 * kMargin);
+  return box & cv::Rect({0, 0}, pixels.size());
+}
+
 }  // namespace
 
 cv::Mat_<float> MaskSupport::Predict(int surface,
@@ -23,16 +32,20 @@ cv::Mat_<float> MaskSupport::Predict(int surface,
   }
   const State& state = found->second;
   const cv::Point2d shift = CenterOf(predicted) - CenterOf(state.pixels);
+  const cv::Rect to = ReachOf(state.pixels, shift);
+  if (to.area() == 0) return result;
   cv::Mat_<float> inside;
   state.pixels.convertTo(inside, CV_32F, 1.0 / 255);
-  inside = Shifted(inside, shift);
-  cv::Mat_<float> support = Shifted(state.support, shift);
+  inside = ShiftedPart(inside, shift, to);
+  cv::Mat_<float> support = ShiftedPart(state.support, shift, to);
   const cv::Size window(2 * kReach + 1, 2 * kReach + 1);
   cv::blur(inside, inside, window);
   cv::blur(support, support, window);
-  for (int v = 0; v < result.rows; ++v) {
-    for (int u = 0; u < result.cols; ++u) {
-      if (inside(v, u) > 0.01f) result(v, u) = support(v, u) / inside(v, u);
+  for (int v = 0; v < to.height; ++v) {
+    for (int u = 0; u < to.width; ++u) {
+      if (inside(v, u) > 0.01f) {
+        result(to.y + v, to.x + u) = support(v, u) / inside(v, u);
+      }
     }
   }
   return result;
