@@ -14,6 +14,11 @@ namespace splitfusion {
 void AddOuterProducts(const double* rows, int count, int nodes, int first,
                       const int* slots, double* blocks);
 
+/// gradient += J^T r: adds `count` rows of `columns` numbers, each times its
+/// residual.
+void AddGradient(const double* residuals, const double* rows, int count,
+                 int columns, double* gradient);
+
 /// out += a^T b for blocks.
 void AddTransposedProduct(const double* a, const double* b, double* out);
 

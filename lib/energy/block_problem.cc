@@ -12,8 +12,6 @@
 namespace splitfusion {
 namespace {
 
-/// Points of a group that are evaluated at a time.
-constexpr int kChunk = 32;
 /// Blocks of a task.
 constexpr int kGrain = 64;
 
@@ -21,28 +19,21 @@ constexpr int kGrain = 64;
 constexpr std::array<int, kMaxSkinningNodes> kInOrder = {0, 1, 2, 3,
                                                          4, 5, 6, 7};
 
-/// gradient += J^T r
-void AddGradient(const double* residuals, const double* rows, int count,
-                 int columns, double* gradient) {
-  for (int r = 0; r < count; ++r, rows += columns) {
-    for (int c = 0; c < columns; ++c) gradient[c] += residuals[r] * rows[c];
-  }
-}
-
 }  // namespace
 
 /// What the evaluation of a group needs besides its values.
 struct BlockProblem::GroupRoom {
   explicit GroupRoom(int dims)
-      : residuals(kChunk * dims),
-        by_point(3 * kChunk * dims),
-        rows(kChunk * dims * kTwistSize * kMaxSkinningNodes) {}
+      : residuals(kWarpedChunk * dims),
+        by_point(3 * kWarpedChunk * dims),
+        rows(new double[kWarpedChunk * dims * kTwistSize * kMaxSkinningNodes]) {
+  }
   std::array<const TwistedNode*, kMaxSkinningNodes> nodes;
-  std::array<double, 3 * kChunk> warped;
-  std::array<double, 3 * kChunk * kMaxSkinningNodes> carried;
+  std::array<double, 3 * kWarpedChunk> warped;
+  std::array<double, CarriedSize(kMaxSkinningNodes)> carried;
   std::vector<double> residuals;
   std::vector<double> by_point;
-  std::vector<double> rows;
+  std::unique_ptr<double[]> rows;  // Of a group that is summed.
 };
 
 /// The same for a tuple.
@@ -166,10 +157,10 @@ void BlockProblem::EvaluateGroup(const PointSet& set, int index,
     std::fill(gradient, matrix, 0.0);
     if (block.summed) std::fill_n(matrix, block.matrix_size(), 0.0);
   }
-  for (int begin = group.begin; begin < group.end; begin += kChunk) {
-    const int end = std::min(begin + kChunk, group.end);
+  for (int begin = group.begin; begin < group.end; begin += kWarpedChunk) {
+    const int end = std::min(begin + kWarpedChunk, group.end);
     const int row = set.dims * (begin - group.begin);
-    double* rows = block.summed ? room->rows.data()
+    double* rows = block.summed ? room->rows.get()
                                 : matrix + kTwistSize * group.node_count * row;
     EvaluateChunk(set, index, begin, end, with_jacobians ? rows : nullptr,
                   gradient, room);
@@ -187,28 +178,24 @@ void BlockProblem::EvaluateChunk(const PointSet& set, int index, int begin,
                                  int end, double* rows, double* gradient,
                                  GroupRoom* room) {
   const WarpedPoints::Group& group = set.points->groups()[index];
-  set.points->Warp(group, begin, end, room->nodes.data(), room->warped.data(),
-                   room->carried.data());
+  const PointChunk chunk =
+      WarpedPoints::Chunk(group, begin, end, room->nodes.data());
+  WarpChunk(chunk, room->warped.data(), room->carried.data());
   for (const PointPart& part : set.parts) {
     double* cost = &costs_[part.term][index];
     if (!part.residuals->Evaluate(
-            &set.points->source()[begin], end - begin, room->warped.data(),
-            room->residuals.data(),
+            begin, end - begin, room->warped.data(), room->residuals.data(),
             rows == nullptr ? nullptr : room->by_point.data(), cost)) {
       *cost = std::nan("");
     }
     if (rows == nullptr) continue;
     const int dims = part.residuals->dims();
-    for (int r = 0; r < dims * (end - begin); ++r) {
-      const int point = r / dims;
-      set.points->DifferentiateByTwists(
-          group, begin + point, room->nodes.data(),
-          &room->carried[3 * group.node_count * point], &room->by_point[3 * r],
-          rows);
-      AddGradient(&room->residuals[r], rows, 1, kTwistSize * group.node_count,
-                  gradient);
-      rows += kTwistSize * group.node_count;
-    }
+    const int count = dims * (end - begin);
+    const int columns = kTwistSize * group.node_count;
+    DifferentiateChunk(chunk, room->carried.data(), dims, room->by_point.data(),
+                       rows);
+    AddGradient(room->residuals.data(), rows, count, columns, gradient);
+    rows += count * columns;
   }
 }
 

@@ -71,28 +71,28 @@ class PointGroupCost : public BlockCost {
     const int dims = residuals_->dims();
     const bool differentiate = jacobians != nullptr;
     double cost = 0;
-    std::array<double, 3 * kChunk> warped;
-    std::array<double, 3 * kChunk * kMaxSkinningNodes> carried;
-    std::vector<double> by_point(differentiate ? 3 * kChunk * dims : 0);
-    for (int begin = group_.begin; begin < group_.end; begin += kChunk) {
-      const int end = std::min(begin + kChunk, group_.end);
+    const int columns = kTwistSize * group_.node_count;
+    std::array<double, 3 * kWarpedChunk> warped;
+    std::array<double, CarriedSize(kMaxSkinningNodes)> carried;
+    std::vector<double> by_point(differentiate ? 3 * kWarpedChunk * dims : 0);
+    std::vector<double> rows(differentiate ? kWarpedChunk * dims * columns : 0);
+    for (int begin = group_.begin; begin < group_.end; begin += kWarpedChunk) {
+      const int end = std::min(begin + kWarpedChunk, group_.end);
       const int first = dims * (begin - group_.begin);
-      points_->Warp(group_, begin, end, nodes.data(), warped.data(),
-                    carried.data());
-      if (!residuals_->Evaluate(&points_->source()[begin], end - begin,
-                                warped.data(), residuals + first,
-                                differentiate ? by_point.data() : nullptr,
-                                &cost)) {
+      const PointChunk chunk =
+          WarpedPoints::Chunk(group_, begin, end, nodes.data());
+      WarpChunk(chunk, warped.data(), carried.data());
+      if (!residuals_->Evaluate(
+              begin, end - begin, warped.data(), residuals + first,
+              differentiate ? by_point.data() : nullptr, &cost)) {
         return false;
       }
       if (!differentiate) continue;
+      DifferentiateChunk(chunk, carried.data(), dims, by_point.data(),
+                         rows.data());
       for (int row = 0; row < dims * (end - begin); ++row) {
-        const int point = row / dims;
-        std::array<double, kTwistSize * kMaxSkinningNodes> values;
-        points_->DifferentiateByTwists(group_, begin + point, nodes.data(),
-                                       &carried[3 * group_.node_count * point],
-                                       &by_point[3 * row], values.data());
-        SplitRow(values.data(), group_.node_count, first + row, jacobians);
+        SplitRow(&rows[row * columns], group_.node_count, first + row,
+                 jacobians);
       }
     }
     SetRest(cost, residuals, jacobians);
@@ -100,9 +100,6 @@ class PointGroupCost : public BlockCost {
   }
 
  private:
-  /// Points evaluated at a time.
-  static constexpr int kChunk = 32;
-
   const DeformationGraph& graph_;
   std::shared_ptr<const WarpedPoints> points_;
   std::shared_ptr<const PointResiduals> residuals_;

@@ -21,12 +21,12 @@ class PointResiduals {
   /// Residuals of one point.
   virtual int dims() const = 0;
 
-  /// Evaluates `count` points, of which `sources` are the places among the
-  /// term's samples and `warped` their warped positions (three a point,
-  /// metres). Residuals and derivatives by the warped point (dims() and 3
-  /// dims() a point; `by_point` may be null) are scaled, see ResidualScaling;
-  /// the cost is added to `cost`. False if a functor refuses.
-  virtual bool Evaluate(const int* sources, int count, const double* warped,
+  /// Evaluates `count` points from `first` on, in the order of WarpedPoints;
+  /// `warped` are their warped positions (three a point, metres). Residuals and
+  /// derivatives by the warped point (dims() and 3 dims() a point; `by_point`
+  /// may be null) are scaled, see ResidualScaling; the cost is added to `cost`.
+  /// False if a functor refuses.
+  virtual bool Evaluate(int first, int count, const double* warped,
                         double* residuals, double* by_point,
                         double* cost) const = 0;
 
@@ -47,17 +47,16 @@ class PointResidualsOf : public PointResiduals {
   /// Residuals of one point.
   static constexpr int kDims = PointFunctor::kResiduals;
 
-  /// `functors[i]` belongs to sample i.
+  /// `functors[i]` belongs to point i of WarpedPoints.
   PointResidualsOf(std::vector<PointFunctor> functors, ResidualScaling scaling)
       : PointResiduals(std::move(scaling)), functors_(std::move(functors)) {}
 
   int dims() const override { return kDims; }
 
-  bool Evaluate(const int* sources, int count, const double* warped,
-                double* residuals, double* by_point,
-                double* cost) const override {
+  bool Evaluate(int first, int count, const double* warped, double* residuals,
+                double* by_point, double* cost) const override {
     for (int i = 0; i < count; ++i) {
-      const PointFunctor& functor = functors_[sources[i]];
+      const PointFunctor& functor = functors_[first + i];
       const double* x = warped + 3 * i;
       double* r = residuals + kDims * i;
       double* derivative =

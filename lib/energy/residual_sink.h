@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "splitfusion/lib/association/correspondence.h"
@@ -59,8 +60,13 @@ class ResidualSink {
     residual_vectors_ = static_cast<int>(samples.size());
     if (samples.empty()) return;
     residuals_.points = cache_->Get(samples);
-    residuals_.of_points =
-        std::make_shared<PointResidualsOf<PointFunctor>>(functors, Scaling());
+    std::vector<PointFunctor> ordered;
+    ordered.reserve(functors.size());
+    for (const int i : residuals_.points->source()) {
+      ordered.push_back(functors[i]);
+    }
+    residuals_.of_points = std::make_shared<PointResidualsOf<PointFunctor>>(
+        std::move(ordered), Scaling());
   }
 
   /// Adds one residual vector per tuple of different nodes; `functors[i]` sees

@@ -9,6 +9,9 @@
 namespace splitfusion {
 namespace {
 
+/// Numbers past the end that the kernels may read.
+constexpr int kReadTooFar = 3;
+
 /// Nodes of a sample, compact for sorting.
 struct NodeKey {
   std::array<std::int32_t, kMaxSkinningNodes> nodes;
@@ -73,14 +76,16 @@ TwistedNode TwistNode(const DeformationGraph& graph, int node,
   }
   TwistedNode twisted;
   const NodeMotion& motion = graph.motions[node];
-  twisted.rotation = exp * motion.rotation;
-  twisted.rest = graph.positions[node];
-  twisted.offset = motion.translation + graph.positions[node] +
-                   Eigen::Map<const Eigen::Vector3d>(twist + 3);
+  const Eigen::Vector3d& g = graph.positions[node];
+  Eigen::Matrix3d::Map(twisted.rotation) = exp * motion.rotation;
+  Eigen::Vector3d::Map(twisted.rest) = g;
+  Eigen::Vector3d::Map(twisted.offset) =
+      motion.translation + g + Eigen::Vector3d::Map(twist + 3);
   for (int d = 0; d < 3; ++d) {
     // d exp = [J e_d]x exp, a cross product matrix.
     const Eigen::Matrix3d cross = derivative[d] * exp.transpose();
-    twisted.spin_transposed.row(d) << cross(2, 1), cross(0, 2), cross(1, 0);
+    Eigen::Matrix3d::Map(twisted.spin_transposed).row(d) << cross(2, 1),
+        cross(0, 2), cross(1, 0);
   }
   return twisted;
 }
@@ -88,62 +93,55 @@ TwistedNode TwistNode(const DeformationGraph& graph, int node,
 WarpedPoints::WarpedPoints(const std::vector<const ModelSample*>& samples) {
   const std::vector<NodeKey> keys = SortedKeys(samples);
   std::size_t weights = 0;
-  for (const NodeKey& key : keys) weights += key.count;
   source_.reserve(keys.size());
-  points_.reserve(3 * keys.size());
-  weights_.reserve(weights);
-  nodes_.reserve(weights);
   for (const NodeKey& key : keys) {
-    const ModelSample& sample = *samples[key.sample];
     const int at = static_cast<int>(source_.size());
     if (groups_.empty() || !key.SameNodes(keys[at - 1]) ||
         at - groups_.back().begin == kMaxGroupSize) {
-      groups_.push_back({at, at, nodes_.data() + nodes_.size(), key.count,
-                         weights_.data() + weights_.size()});
-      nodes_.insert(nodes_.end(), key.nodes.begin(),
-                    key.nodes.begin() + key.count);
+      groups_.push_back({at, at, nullptr, key.count, nullptr, nullptr});
     }
     ++groups_.back().end;
     source_.push_back(key.sample);
-    for (int d = 0; d < 3; ++d) points_.push_back(sample.point[d]);
-    for (int k = 0; k < key.count; ++k) {
-      weights_.push_back(sample.skinning.weights[k]);
+    weights += key.count;
+  }
+  points_.resize(3 * keys.size() + kReadTooFar);
+  weights_.resize(weights + kReadTooFar);
+  nodes_.reserve(weights);
+  double* next_weight = weights_.data();
+  for (Group& group : groups_) {
+    group.points = points_.data() + 3 * group.begin;
+    group.weights = next_weight;
+    group.nodes = nodes_.data() + nodes_.size();
+    const auto& nodes = keys[group.begin].nodes;
+    nodes_.insert(nodes_.end(), nodes.begin(),
+                  nodes.begin() + group.node_count);
+    FillGroup(samples, group, &points_[3 * group.begin], next_weight);
+    next_weight += group.node_count * (group.end - group.begin);
+  }
+}
+
+void WarpedPoints::FillGroup(const std::vector<const ModelSample*>& samples,
+                             const Group& group, double* points,
+                             double* weights) const {
+  const int size = group.end - group.begin;
+  for (int i = 0; i < size; ++i) {
+    const ModelSample& sample = *samples[source_[group.begin + i]];
+    for (int d = 0; d < 3; ++d) points[size * d + i] = sample.point[d];
+    for (int k = 0; k < group.node_count; ++k) {
+      weights[size * k + i] = sample.skinning.weights[k];
     }
   }
 }
 
-void WarpedPoints::Warp(const Group& group, int begin, int end,
-                        const TwistedNode* const* nodes, double* warped,
-                        double* carried) const {
-  const double* weights =
-      group.weights + (begin - group.begin) * group.node_count;
-  for (int i = begin; i < end; ++i) {
-    const Eigen::Vector3d point(&points_[3 * i]);
-    Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    for (int k = 0; k < group.node_count; ++k, carried += 3) {
-      const TwistedNode& node = *nodes[k];
-      const Eigen::Vector3d p = node.rotation * (point - node.rest);
-      Eigen::Vector3d::Map(carried) = p;
-      x += *weights++ * (p + node.offset);
-    }
-    Eigen::Vector3d::Map(warped + 3 * (i - begin)) = x;
-  }
-}
-
-void WarpedPoints::DifferentiateByTwists(const Group& group, int point,
-                                         const TwistedNode* const* nodes,
-                                         const double* carried,
-                                         const double* by_point,
-                                         double* row) const {
-  const Eigen::Vector3d b(by_point);
-  const double* weights =
-      group.weights + (point - group.begin) * group.node_count;
-  for (int k = 0; k < group.node_count; ++k, carried += 3, row += kTwistSize) {
-    const Eigen::Vector3d weighted = weights[k] * b;
-    const Eigen::Vector3d p(carried);
-    Eigen::Vector3d::Map(row) = nodes[k]->spin_transposed * p.cross(weighted);
-    Eigen::Vector3d::Map(row + 3) = weighted;
-  }
+PointChunk WarpedPoints::Chunk(const Group& group, int begin, int end,
+                               const TwistedNode* const* nodes) {
+  const int first = begin - group.begin;
+  return {nodes,
+          group.node_count,
+          end - begin,
+          group.end - group.begin,
+          group.points + first,
+          group.weights + first};
 }
 
 std::shared_ptr<const WarpedPoints> WarpedPointsCache::Get(

@@ -8,19 +8,9 @@
 
 #include "splitfusion/lib/association/correspondence.h"
 #include "splitfusion/lib/energy/warp_functor.h"
+#include "splitfusion/lib/energy/warp_kernels.h"
 
 namespace splitfusion {
-
-/// A node's motion under the increment of its twist: a canonical point v goes
-/// to p + offset with p = rotation (v - rest).
-struct TwistedNode {
-  Eigen::Matrix3d rotation;  ///< exp(omega) R_i
-  Eigen::Vector3d rest;      ///< g_i, canonical, metres.
-  Eigen::Vector3d offset;    ///< g_i + t_i + tau_i, camera frame, metres.
-  /// J^T of the left Jacobian J: dp = (J domega) x p, so that of any function
-  /// with the derivative b by its point, that by omega is J^T (p x b).
-  Eigen::Matrix3d spin_transposed;
-};
 
 /// The node of the graph under `twist` = [omega (rad), tau (m)]. exp and its
 /// derivative are Ceres' AngleAxisToRotationMatrix, over Jets of three.
@@ -40,7 +30,8 @@ class WarpedPoints {
     int end = 0;                      ///< Past the last point.
     const int* nodes = nullptr;       ///< Their nodes, ascending.
     int node_count = 0;               ///< Number of nodes.
-    const double* weights = nullptr;  ///< w, by point and node.
+    const double* points = nullptr;   ///< All x, all y, all z; canonical.
+    const double* weights = nullptr;  ///< w of all points, by node.
   };
 
   /// Most points of a group: bounds the memory of one evaluation.
@@ -58,25 +49,18 @@ class WarpedPoints {
   /// For every point, in the order of the class, its place among the samples.
   const std::vector<int>& source() const { return source_; }
 
-  /// Warps the points begin..end of a group; `nodes`: its nodes in order.
-  /// `warped` receives x (three a point), `carried` p_k by point and node; both
-  /// camera frame, metres.
-  void Warp(const Group& group, int begin, int end,
-            const TwistedNode* const* nodes, double* warped,
-            double* carried) const;
-
-  /// Derivative of one residual of point `point` by the twists of the group's
-  /// nodes (6 each, to `row`): `by_point` is its derivative by x, `carried` p_k
-  /// of that point.
-  void DifferentiateByTwists(const Group& group, int point,
-                             const TwistedNode* const* nodes,
-                             const double* carried, const double* by_point,
-                             double* row) const;
+  /// Points begin..end of a group, at most kWarpedChunk, for the kernels;
+  /// `nodes`: the group's nodes in order.
+  static PointChunk Chunk(const Group& group, int begin, int end,
+                          const TwistedNode* const* nodes);
 
  private:
+  void FillGroup(const std::vector<const ModelSample*>& samples,
+                 const Group& group, double* points, double* weights) const;
+
   std::vector<int> source_;
-  std::vector<double> points_;   // 3 a point, canonical.
-  std::vector<double> weights_;  // By group, point and node.
+  std::vector<double> points_;   // By group and coordinate.
+  std::vector<double> weights_;  // By group and node.
   std::vector<int> nodes_;       // By group.
   std::vector<Group> groups_;
 };

@@ -91,7 +91,7 @@ BENCHMARK_DEFINE_F(SplitFixture, SplitFrame)(benchmark::State& state) {
 BENCHMARK_DEFINE_F(SplitFixture, Network)(benchmark::State& state) {
   const char* model = std::getenv("SPLITFUSION_MODEL");
   if (model == nullptr) {
-    state.SkipWithError("SPLITFUSION_MODEL is not set");
+    state.SkipWithError("skipped: no network given; see --model");
     return;
   }
   const char* decoder = std::getenv("SPLITFUSION_DECODER");
@@ -109,17 +109,13 @@ BENCHMARK_DEFINE_F(SplitFixture, Network)(benchmark::State& state) {
 }
 
 BENCHMARK_REGISTER_F(SplitFixture, RefinePerson)
-    ->Unit(benchmark::kMillisecond)
+    ->Name("refinement")
     ->UseRealTime();
 BENCHMARK_REGISTER_F(SplitFixture, MatchInstances)
-    ->Unit(benchmark::kMillisecond)
+    ->Name("matching")
     ->UseRealTime();
-BENCHMARK_REGISTER_F(SplitFixture, SplitFrame)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
-BENCHMARK_REGISTER_F(SplitFixture, Network)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
+BENCHMARK_REGISTER_F(SplitFixture, SplitFrame)->Name("split")->UseRealTime();
+BENCHMARK_REGISTER_F(SplitFixture, Network)->Name("network")->UseRealTime();
 
 }  // namespace
 }  // namespace splitfusion
