@@ -11,8 +11,13 @@
     !defined(__SANITIZE_ADDRESS__)
 #define SPLITFUSION_VECTOR_CLONES \
   __attribute__((target_clones("avx2", "default")))
+/// The same with AVX-512 as well, which can fuse them: only in files that begin
+/// with `#pragma GCC optimize("fp-contract=off")`, too.
+#define SPLITFUSION_WIDEST_VECTOR_CLONES \
+  __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define SPLITFUSION_VECTOR_CLONES
+#define SPLITFUSION_WIDEST_VECTOR_CLONES
 #endif
 
 #endif  // SPLITFUSION_LIB_BASE_VECTOR_CLONES_H_

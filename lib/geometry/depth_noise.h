@@ -3,13 +3,18 @@
 
 namespace splitfusion {
 
+/// Constants of DepthSigma(), metres and 1 / metres.
+constexpr double kLeastDepthSigma = 0.0012;
+constexpr double kDepthSigmaGrowth = 0.0019;
+constexpr double kBestDepth = 0.4;
+
 /// Axial noise of a structured-light camera at z-depth `depth` (both metres):
 /// sigma = 0.0012 + 0.0019 (z - 0.4)^2 (Nguyen et al. 2012). It sets weights
 /// and edge thresholds; its shape matters, its scale does not.
 template <typename T>
 T DepthSigma(T depth) {
-  const T d = depth - T(0.4);
-  return T(0.0012) + T(0.0019) * d * d;
+  const T d = depth - T(kBestDepth);
+  return T(kLeastDepthSigma) + T(kDepthSigmaGrowth) * d * d;
 }
 
 }  // namespace splitfusion

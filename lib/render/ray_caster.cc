@@ -43,27 +43,58 @@ class CubeReader {
   /// of them is unobserved.
   bool Read(int x, int y, int z, float value[2][2][2]) const {
     constexpr int kLast = kLeafSize - 1;
-    const bool inside =
-        (x & kLast) != kLast && (y & kLast) != kLast && (z & kLast) != kLast;
-    int leaf = volume_.table.Find(x >> 3, y >> 3, z >> 3);
-    float lowest_weight = 1;
-    for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 2; ++j) {
-        for (int k = 0; k < 2; ++k) {
-          if (!inside) {
-            leaf = volume_.table.Find((x + i) >> 3, (y + j) >> 3, (z + k) >> 3);
-          }
-          const int offset =
-              ((x + i) & 7) << 6 | ((y + j) & 7) << 3 | ((z + k) & 7);
-          lowest_weight = std::min(lowest_weight, volume_.weight[leaf][offset]);
-          value[i][j][k] = volume_.distance[leaf][offset];
+    // Whether the cube reaches into the next block along the axes.
+    const int over_x = (x & kLast) == kLast, over_y = (y & kLast) == kLast,
+              over_z = (z & kLast) == kLast;
+    int leaf[2][2][2];
+    for (int i = 0; i <= over_x; ++i) {
+      for (int j = 0; j <= over_y; ++j) {
+        for (int k = 0; k <= over_z; ++k) {
+          leaf[i][j][k] =
+              volume_.table.Find((x + i) >> 3, (y + j) >> 3, (z + k) >> 3);
         }
       }
     }
-    return lowest_weight > 0;
+    if ((over_x | over_y | over_z) == 0) {
+      const int offset = Offset(x, y, z);
+      return ReadInside(volume_.distance[leaf[0][0][0]] + offset,
+                        volume_.weight[leaf[0][0][0]] + offset, value);
+    }
+    bool observed = true;
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) {
+        for (int k = 0; k < 2; ++k) {
+          const int number = leaf[i & over_x][j & over_y][k & over_z];
+          const int offset = Offset(x + i, y + j, z + k);
+          observed &= volume_.weight[number][offset] > 0;
+          value[i][j][k] = volume_.distance[number][offset];
+        }
+      }
+    }
+    return observed;
   }
 
  private:
+  static int Offset(int x, int y, int z) {
+    return (x & 7) << 6 | (y & 7) << 3 | (z & 7);
+  }
+
+  /// The same, given the low corner in the block that holds all eight.
+  static bool ReadInside(const float* distance, const float* weight,
+                         float value[2][2][2]) {
+    bool observed = true;
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) {
+        for (int k = 0; k < 2; ++k) {
+          const int offset = i << 6 | j << 3 | k;
+          observed &= weight[offset] > 0;
+          value[i][j][k] = distance[offset];
+        }
+      }
+    }
+    return observed;
+  }
+
   const internal::RayVolume& volume_;
 };
 
@@ -144,7 +175,7 @@ class Refiner {
 /// All that the rays of one image have in common.
 struct Cast {
   internal::RayVolume volume;
-  std::vector<LeafPlace> places;              // Of the blocks.
+  std::vector<LeafPlace> places;              // Of the blocks with surface.
   std::vector<const openvdb::Vec3s*> color;   // By block number.
   std::vector<float> no_distance, no_weight;  // Of the block that is not there.
 };
@@ -152,32 +183,31 @@ struct Cast {
 Cast MakeCast(const TsdfVolume& volume, const Rigid3f& camera_from_canonical,
               const RayCastOptions& options) {
   const float voxel = static_cast<float>(volume.options().voxel_size);
-  const std::vector<internal::ConstLeafBuffers> leaves =
-      internal::CollectLeaves(volume);
-  std::vector<LeafPlace> places;
-  places.reserve(leaves.size());
-  for (const internal::ConstLeafBuffers& leaf : leaves) {
-    places.push_back(
-        {leaf.origin.x() >> 3, leaf.origin.y() >> 3, leaf.origin.z() >> 3});
-  }
+  const TsdfVolume::Grids& grids = volume.grids();
   const Eigen::Vector3f origin =
       camera_from_canonical.inverse().translation() / voxel;
-  Cast cast{{internal::LeafTable(places),
+  Cast cast{{grids.table,
              {},
              {},
+             {0},
              {origin.x(), origin.y(), origin.z()},
              voxel,
              static_cast<float>(options.min_weight)},
-            std::move(places),
+            {},
             {nullptr},
             std::vector<float>(kLeafVoxels, 0.0f),
             std::vector<float>(kLeafVoxels, -1.0f)};
   cast.volume.distance.push_back(cast.no_distance.data());
   cast.volume.weight.push_back(cast.no_weight.data());
-  for (const internal::ConstLeafBuffers& leaf : leaves) {
+  for (std::size_t i = 0; i < grids.leaves.size(); ++i) {
+    const internal::LeafBuffers& leaf = grids.leaves[i];
     cast.volume.distance.push_back(leaf.distance);
     cast.volume.weight.push_back(leaf.weight);
+    cast.volume.has_inside.push_back(grids.states[i].has_inside);
     cast.color.push_back(leaf.color);
+    if (grids.states[i].has_inside) {
+      cast.places.push_back(internal::PlaceOf(leaf.origin));
+    }
   }
   return cast;
 }
@@ -188,7 +218,7 @@ cv::Vec3b ColorAt(const Cast& cast, const Eigen::Vector3f& p) {
   const int y = FloorToInt(p.y() + 0.5f);
   const int z = FloorToInt(p.z() + 0.5f);
   const int leaf = cast.volume.table.Find(x >> 3, y >> 3, z >> 3);
-  if (leaf == 0) return {0, 0, 0};
+  if (cast.color[leaf] == nullptr) return {0, 0, 0};
   const openvdb::Vec3s& rgb =
       cast.color[leaf][(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
   const auto byte = [](float v) {

@@ -27,33 +27,55 @@ void SortUnique(std::vector<openvdb::Coord>* origins) {
   origins->erase(std::unique(origins->begin(), origins->end()), origins->end());
 }
 
-/// Blocks that the band around the pixels of one row passes through.
-std::vector<openvdb::Coord> CollectRow(const DepthObservation& observation,
-                                       const Rigid3d& canonical_from_camera,
-                                       const TsdfOptions& options, int v) {
-  const double step = 0.5 * kLeafSize * options.voxel_size;
+/// Largest integer that is not above `x`. (std::floor is a function call for
+/// the processors that all are built for.)
+int FloorToInt(double x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (truncated > x ? 1 : 0);
+}
+
+/// The ray of a pixel counted in blocks: at z-depth z its point is in the block
+/// at floor(origin + z * step).
+struct BlockRay {
+  Eigen::Vector3d origin, step;
+
+  internal::LeafPlace At(double z) const {
+    return {FloorToInt(origin.x() + z * step.x()),
+            FloorToInt(origin.y() + z * step.y()),
+            FloorToInt(origin.z() + z * step.z())};
+  }
+};
+
+/// Blocks that the band around the pixels of one row passes through and that
+/// are not in the volume yet.
+std::vector<openvdb::Coord> MissingInRow(const DepthObservation& observation,
+                                         const Rigid3d& canonical_from_camera,
+                                         const TsdfVolume& volume, int v) {
+  const double block = kLeafSize * volume.options().voxel_size;
+  const double truncation = volume.options().truncation;
+  const internal::LeafTable& table = volume.grids().table;
   const float* depth = observation.depth[v];
   const std::uint8_t* role = observation.role[v];
-  std::vector<openvdb::Coord> origins;
+  std::vector<openvdb::Coord> missing;
+  BlockRay ray = {canonical_from_camera.translation() / block, {}};
   for (int u = 0; u < observation.camera.width; u += kPixelStride) {
     if (!(depth[u] > 0) ||
         role[u] != static_cast<std::uint8_t>(PixelRole::kWrite)) {
       continue;
     }
-    const double z_end = depth[u] + options.truncation;
-    for (double z = depth[u] - options.truncation;; z += step) {
-      const Eigen::Vector3d point =
-          canonical_from_camera *
-          observation.camera.BackProject<double>(u, v, std::min(z, z_end));
-      const openvdb::Coord origin = LeafOrigin(point / options.voxel_size);
-      if (origins.empty() || origins.back() != origin) {
-        origins.push_back(origin);
+    ray.step = canonical_from_camera.linear() *
+               observation.camera.BackProject<double>(u, v, 1) / block;
+    const double z_end = depth[u] + truncation;
+    for (double z = depth[u] - truncation;; z += 0.5 * block) {
+      const auto [x, y, z_place] = ray.At(std::min(z, z_end));
+      if (table.Find(x, y, z_place) == 0) {
+        missing.emplace_back(kLeafSize * x, kLeafSize * y, kLeafSize * z_place);
       }
       if (z >= z_end) break;
     }
   }
-  SortUnique(&origins);
-  return origins;
+  SortUnique(&missing);
+  return missing;
 }
 
 }  // namespace
@@ -64,8 +86,8 @@ void AllocateBand(const DepthObservation& observation,
   const int rows = (observation.depth.rows + kPixelStride - 1) / kPixelStride;
   std::vector<std::vector<openvdb::Coord>> found(rows);
   tbb::parallel_for(0, rows, [&](int row) {
-    found[row] = CollectRow(observation, canonical_from_camera,
-                            volume->options(), row * kPixelStride);
+    found[row] = MissingInRow(observation, canonical_from_camera, *volume,
+                              row * kPixelStride);
   });
   std::vector<openvdb::Coord> all;
   for (const auto& origins : found) {

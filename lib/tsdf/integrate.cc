@@ -50,13 +50,14 @@ bool IntegrateLeaf(const internal::FusionImage& image,
     Eigen::Map<Eigen::Vector3f> at(corners[i]);
     at = base + (kLeafSize - 1) * (steps * corner);
   }
-  if (!image.MayChange(internal::BoundInImage(image.view(), corners, 8))) {
-    return false;
-  }
+  const internal::ImageBox box =
+      internal::BoundInImage(image.view(), corners, 8);
+  const internal::FusedPart part = image.MayChange(box);
+  if (box.z_low >= part.farthest) return false;
   const float step_rows[3][3] = {{steps(0, 0), steps(1, 0), steps(2, 0)},
                                  {steps(0, 1), steps(1, 1), steps(2, 1)},
                                  {steps(0, 2), steps(1, 2), steps(2, 2)}};
-  return internal::FuseRigidLeaf(image.view(), base.data(), step_rows,
+  return internal::FuseRigidLeaf(image.view(), base.data(), step_rows, part,
                                  internal::ToFused(leaf));
 }
 
@@ -64,21 +65,21 @@ bool IntegrateLeaf(const internal::FusionImage& image,
 
 void IntegrateRigid(const DepthObservation& observation,
                     const Rigid3d& camera_from_canonical, TsdfVolume* volume) {
-  const std::vector<internal::LeafBuffers> leaves =
-      internal::CollectLeaves(volume);
+  TsdfVolume::Grids& grids = volume->grids();
   const internal::FusionImage image(observation, volume->options());
   const Rigid3f motion = camera_from_canonical.cast<float>();
   const float voxel = static_cast<float>(volume->options().voxel_size);
-  std::vector<char> changed(leaves.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size(), 16),
+  ++grids.time;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grids.leaves.size(), 16),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i < range.end();
                            ++i) {
-                        changed[i] = IntegrateLeaf(image, observation.camera,
-                                                   motion, voxel, leaves[i]);
+                        if (IntegrateLeaf(image, observation.camera, motion,
+                                          voxel, grids.leaves[i])) {
+                          grids.RecordChange(i);
+                        }
                       }
                     });
-  internal::RecordChanges(leaves, changed, volume);
 }
 
 }  // namespace splitfusion

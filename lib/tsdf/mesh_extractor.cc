@@ -33,26 +33,26 @@ struct TreeOrder {
   }
 };
 
-void SortUnique(std::vector<Coord>* origins) {
-  std::sort(origins->begin(), origins->end());
-  origins->erase(std::unique(origins->begin(), origins->end()), origins->end());
-}
-
 /// The given blocks and all from `low` to `high` blocks away along every axis.
 std::vector<Coord> WithNeighbors(const std::vector<Coord>& origins, int low,
                                  int high) {
   std::vector<Coord> all;
+  internal::LeafTable numbers;
+  const auto add = [&](const Coord& origin) {
+    const internal::LeafPlace place = internal::PlaceOf(origin);
+    if (numbers.Find(place[0], place[1], place[2]) != 0) return;
+    all.push_back(origin);
+    numbers.Insert(place, static_cast<std::int32_t>(all.size()));
+  };
   for (const Coord& origin : origins) {
     for (int x = low; x <= high; ++x) {
       for (int y = low; y <= high; ++y) {
         for (int z = low; z <= high; ++z) {
-          all.push_back(
-              origin.offsetBy(kLeafSize * x, kLeafSize * y, kLeafSize * z));
+          add(origin.offsetBy(kLeafSize * x, kLeafSize * y, kLeafSize * z));
         }
       }
     }
   }
-  SortUnique(&all);
   return all;
 }
 
@@ -67,45 +67,49 @@ struct MeshExtractor::Blocks {
     return found == meshes.end() ? nullptr : found->second.get();
   }
 
-  std::vector<Coord> Changed(const TsdfVolume& volume,
-                             const internal::LeafLookup& lookup) const;
-  void Remesh(const TsdfVolume& volume, const internal::LeafLookup& lookup,
-              float min_weight, const std::vector<Coord>& origins);
+  std::vector<Coord> Changed(const TsdfVolume& volume) const;
+  std::vector<Coord> Remesh(const TsdfVolume& volume,
+                            const internal::LeafLookup& lookup,
+                            float min_weight,
+                            const std::vector<Coord>& origins);
   void ConnectAnew(const std::vector<Coord>& origins);
   TriangleMesh Join(std::vector<int>* kept_from);
 };
 
 /// Blocks whose voxels changed since the last time.
 std::vector<Coord> MeshExtractor::Blocks::Changed(
-    const TsdfVolume& volume, const internal::LeafLookup& lookup) const {
-  if (time < 0) return lookup.Origins();
+    const TsdfVolume& volume) const {
+  const TsdfVolume::Grids& grids = volume.grids();
   std::vector<Coord> changed;
-  for (const auto& [origin, when] : volume.grids().changed) {
-    if (when > time) changed.push_back(origin);
+  for (std::size_t i = 0; i < grids.leaves.size(); ++i) {
+    if (time < 0 || grids.states[i].changed > time) {
+      changed.push_back(grids.leaves[i].origin);
+    }
   }
   return changed;
 }
 
-void MeshExtractor::Blocks::Remesh(const TsdfVolume& volume,
-                                   const internal::LeafLookup& lookup,
-                                   float min_weight,
-                                   const std::vector<Coord>& origins) {
+/// Makes the vertices of blocks anew; gives those that have or had some.
+std::vector<Coord> MeshExtractor::Blocks::Remesh(
+    const TsdfVolume& volume, const internal::LeafLookup& lookup,
+    float min_weight, const std::vector<Coord>& origins) {
   const openvdb::math::Transform& transform =
       volume.grids().distance->transform();
   std::vector<std::unique_ptr<LeafMesh>> made(origins.size());
   tbb::parallel_for(std::size_t{0}, origins.size(), [&](std::size_t i) {
+    if (!lookup.MayHaveSurface(origins[i])) return;
     auto mesh = std::make_unique<LeafMesh>();
     if (MakeVertices(lookup, origins[i], transform, min_weight, mesh.get())) {
       made[i] = std::move(mesh);
     }
   });
+  std::vector<Coord> renewed;
   for (std::size_t i = 0; i < origins.size(); ++i) {
-    if (made[i] != nullptr) {
-      meshes[origins[i]] = std::move(made[i]);
-    } else {
-      meshes.erase(origins[i]);
-    }
+    const bool is_made = made[i] != nullptr;
+    if (is_made) meshes[origins[i]] = std::move(made[i]);
+    if (is_made || meshes.erase(origins[i]) > 0) renewed.push_back(origins[i]);
   }
+  return renewed;
 }
 
 /// Makes the triangles of blocks anew; `origins` may name blocks that have no
@@ -170,10 +174,10 @@ TriangleMesh MeshExtractor::Extract(const TsdfVolume& volume,
   const internal::LeafLookup lookup(volume);
   // The mesh of a block reaches into its neighbours, and the faces around its
   // lowest voxels have corners in the blocks before it.
-  const std::vector<Coord> changed =
-      WithNeighbors(blocks_->Changed(volume, lookup), -1, 1);
-  blocks_->Remesh(volume, lookup, static_cast<float>(min_weight), changed);
-  blocks_->ConnectAnew(WithNeighbors(changed, 0, 1));
+  const std::vector<Coord> renewed =
+      blocks_->Remesh(volume, lookup, static_cast<float>(min_weight),
+                      WithNeighbors(blocks_->Changed(volume), -1, 1));
+  blocks_->ConnectAnew(WithNeighbors(renewed, 0, 1));
   blocks_->time = volume.grids().time;
   return blocks_->Join(&kept_from_);
 }

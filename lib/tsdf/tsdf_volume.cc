@@ -12,6 +12,9 @@
 namespace splitfusion {
 namespace {
 
+/// On the distance grid of a volume without colour.
+constexpr char kNoColor[] = "no_color";
+
 template <typename Grid>
 typename Grid::Ptr MakeGrid(const std::string& name, double voxel_size,
                             typename Grid::ValueType background) {
@@ -60,11 +63,34 @@ void TsdfOptions::Check() const {
 }
 
 void TsdfVolume::Grids::Touch(const openvdb::Coord& origin) {
+  const auto [x, y, z] = internal::PlaceOf(origin);
+  if (table.Find(x, y, z) != 0) return;
   // OpenVDB meshes and prunes by active voxels; here a block is in use as a
   // whole, and the weight says what was observed.
-  distance->tree().touchLeaf(origin)->setValuesOn();
-  weight->tree().touchLeaf(origin)->setValuesOn();
-  color->tree().touchLeaf(origin)->setValuesOn();
+  internal::LeafBuffers leaf;
+  leaf.origin = origin;
+  const auto touch = [&](auto* tree, auto** buffer) {
+    auto* touched = tree->touchLeaf(origin);
+    touched->setValuesOn();
+    *buffer = touched->buffer().data();
+  };
+  touch(&distance->tree(), &leaf.distance);
+  touch(&weight->tree(), &leaf.weight);
+  if (color != nullptr) touch(&color->tree(), &leaf.color);
+  leaves.push_back(leaf);
+  states.emplace_back();
+  table.Insert({x, y, z}, static_cast<std::int32_t>(leaves.size()));
+}
+
+void TsdfVolume::Grids::Enter() {
+  for (auto leaf = distance->tree().beginLeaf(); leaf; ++leaf) {
+    Touch(leaf->origin());
+    RecordChange(leaves.size() - 1);
+  }
+}
+
+void TsdfVolume::Grids::RecordChange(std::size_t leaf) {
+  states[leaf] = {time, internal::HasInside(internal::ToFused(leaves[leaf]))};
 }
 
 TsdfVolume::TsdfVolume(const TsdfOptions& options)
@@ -74,6 +100,7 @@ TsdfVolume::TsdfVolume(const TsdfOptions& options)
       "distance", options.voxel_size, static_cast<float>(options.truncation));
   grids_->weight =
       MakeGrid<openvdb::FloatGrid>("weight", options.voxel_size, 0.0f);
+  if (!options.has_color) return;
   grids_->color = MakeGrid<openvdb::Vec3SGrid>("color", options.voxel_size,
                                                openvdb::Vec3s(0, 0, 0));
 }
@@ -82,9 +109,7 @@ TsdfVolume::~TsdfVolume() = default;
 TsdfVolume::TsdfVolume(TsdfVolume&&) noexcept = default;
 TsdfVolume& TsdfVolume::operator=(TsdfVolume&&) noexcept = default;
 
-std::size_t TsdfVolume::leaf_count() const {
-  return grids_->distance->tree().leafCount();
-}
+std::size_t TsdfVolume::leaf_count() const { return grids_->leaves.size(); }
 
 void TsdfVolume::Write(const std::string& path) const {
   WritePathAtomically(path, [&](const std::string& temporary) {
@@ -93,8 +118,14 @@ void TsdfVolume::Write(const std::string& path) const {
           "truncation", openvdb::DoubleMetadata(options_.truncation));
       grids_->distance->insertMeta(
           "max_weight", openvdb::DoubleMetadata(options_.max_weight));
+      openvdb::GridPtrVec grids = {grids_->distance, grids_->weight};
+      if (options_.has_color) {
+        grids.push_back(grids_->color);
+      } else {
+        grids_->distance->insertMeta(kNoColor, openvdb::BoolMetadata(true));
+      }
       openvdb::io::File file(temporary);
-      file.write({grids_->distance, grids_->weight, grids_->color});
+      file.write(grids);
       file.close();
     } catch (const openvdb::Exception& e) {
       throw InputError(path + ": cannot be written (" + e.what() + ")");
@@ -106,17 +137,21 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
   openvdb::initialize();
   try {
     const openvdb::GridPtrVecPtr all = ReadGrids(path);
-    Grids grids{FindGrid<openvdb::FloatGrid>(*all, "distance", path),
-                FindGrid<openvdb::FloatGrid>(*all, "weight", path),
-                FindGrid<openvdb::Vec3SGrid>(*all, "color", path),
-                {},
-                0};
+    Grids grids;
+    grids.distance = FindGrid<openvdb::FloatGrid>(*all, "distance", path);
+    grids.weight = FindGrid<openvdb::FloatGrid>(*all, "weight", path);
     TsdfOptions options;
+    options.has_color =
+        grids.distance->getMetadata<openvdb::BoolMetadata>(kNoColor) == nullptr;
+    if (options.has_color) {
+      grids.color = FindGrid<openvdb::Vec3SGrid>(*all, "color", path);
+    }
     options.voxel_size = grids.distance->voxelSize()[0];
     options.truncation = grids.distance->metaValue<double>("truncation");
     options.max_weight = grids.distance->metaValue<double>("max_weight");
     TsdfVolume volume(options);
-    *volume.grids_ = grids;
+    grids.Enter();
+    *volume.grids_ = std::move(grids);
     return volume;
   } catch (const std::ios::failure&) {
     throw InputError(path + ": not a readable volume (it ends early)");
@@ -127,46 +162,10 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
 
 namespace internal {
 
-std::vector<LeafBuffers> CollectLeaves(TsdfVolume* volume) {
-  TsdfVolume::Grids& grids = volume->grids();
-  std::vector<LeafBuffers> leaves;
-  leaves.reserve(volume->leaf_count());
-  auto weight = grids.weight->tree().beginLeaf();
-  auto color = grids.color->tree().beginLeaf();
-  for (auto leaf = grids.distance->tree().beginLeaf(); leaf;
-       ++leaf, ++weight, ++color) {
-    leaves.push_back({leaf->origin(), leaf->buffer().data(),
-                      weight->buffer().data(), color->buffer().data()});
-  }
-  return leaves;
-}
-
-std::vector<ConstLeafBuffers> CollectLeaves(const TsdfVolume& volume) {
-  const TsdfVolume::Grids& grids = volume.grids();
-  std::vector<ConstLeafBuffers> leaves;
-  leaves.reserve(volume.leaf_count());
-  auto weight = grids.weight->tree().cbeginLeaf();
-  auto color = grids.color->tree().cbeginLeaf();
-  for (auto leaf = grids.distance->tree().cbeginLeaf(); leaf;
-       ++leaf, ++weight, ++color) {
-    leaves.push_back({leaf->origin(), leaf->buffer().data(),
-                      weight->buffer().data(), color->buffer().data()});
-  }
-  return leaves;
-}
-
 FusedLeaf ToFused(const LeafBuffers& leaf) {
   static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
-  return {leaf.distance, leaf.weight, leaf.color->asPointer()};
-}
-
-void RecordChanges(const std::vector<LeafBuffers>& leaves,
-                   const std::vector<char>& changed, TsdfVolume* volume) {
-  TsdfVolume::Grids& grids = volume->grids();
-  ++grids.time;
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (changed[i]) grids.changed[leaves[i].origin] = grids.time;
-  }
+  return {leaf.distance, leaf.weight,
+          leaf.color == nullptr ? nullptr : leaf.color->asPointer()};
 }
 
 }  // namespace internal

@@ -22,6 +22,8 @@ struct TsdfOptions {
   /// The same where space was found empty: how long something that comes back
   /// takes to be believed.
   double max_free_weight = 64;
+  /// False: distances alone. Takes two fifths of the memory; meshes are black.
+  bool has_color = true;
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
@@ -41,7 +43,8 @@ struct DepthObservation {
   cv::Mat_<float> depth;        ///< Metres, 0 = none.
   cv::Mat_<float> weight;       ///< Confidence of every pixel, about 0..1.
   cv::Mat_<std::uint8_t> role;  ///< PixelRole of every pixel.
-  cv::Mat color;                ///< 8UC3, BGR.
+  cv::Mat color;                ///< 8UC3, BGR; may be empty for a volume
+                                ///< without colour.
   /// Where in the canonical frame a pixel's point belongs, metres, NaN where
   /// that is not known; empty: of none. What is farther than `place_tolerance`
   /// (metres) from there is not written, only carved. Of warped surfaces.
@@ -75,8 +78,8 @@ class TsdfVolume {
   /// Number of 8x8x8 blocks in memory.
   std::size_t leaf_count() const;
 
-  /// Writes grids "distance" (m), "weight" and "color" (RGB, 0..1) to a `.vdb`
-  /// file through a temporary name.
+  /// Writes grids "distance" (m), "weight" and, if there is colour, "color"
+  /// (RGB, 0..1) to a `.vdb` file through a temporary name.
   ///
   /// @throw InputError if the file cannot be written.
   void Write(const std::string& path) const;

@@ -4,13 +4,12 @@
 
 #include <array>
 #include <cmath>
-#include <unordered_map>
+#include <deque>
 #include <utility>
 #include <vector>
 
 #include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
-#include "splitfusion/lib/tsdf/internal/leaf_table.h"
 
 namespace splitfusion {
 namespace {
@@ -42,6 +41,7 @@ struct SkinnedPoint {
 
 /// Skinning of a block's lattice.
 struct LeafLattice {
+  bool skinned = false;
   bool attached = false;  // Some node is near enough.
   std::array<SkinnedPoint, kOwnPoints> own;
   /// Points whose owner is not there or not attached.
@@ -82,6 +82,7 @@ void SkinOwn(const openvdb::Coord& origin, float voxel, float reach,
   SkinningSupport support;
   support.nearest =
       index.NearestNode(LatticePoint(origin, voxel, center), &distance);
+  lattice->skinned = true;
   lattice->attached = distance < reach + half_diagonal;
   if (!lattice->attached) return;
   for (int i = 0; i < kLatticePoints; ++i) {
@@ -194,9 +195,9 @@ bool IntegrateLeaf(const DepthObservation& observation,
     for (int axis = 0; axis < 3; ++axis) lattice[i][axis] = warped[i][axis];
   }
   const internal::FusionView& view = image.view();
-  if (!image.MayChange(internal::BoundInImage(view, lattice, kLatticePoints))) {
-    return false;
-  }
+  const internal::ImageBox box =
+      internal::BoundInImage(view, lattice, kLatticePoints);
+  if (box.z_low >= image.MayChange(box).farthest) return false;
   bool foreign[internal::kLatticeCells] = {};
   if (!observation.places.empty()) {
     MarkForeign(observation, voxel, leaf.origin, warped, foreign);
@@ -206,22 +207,15 @@ bool IntegrateLeaf(const DepthObservation& observation,
 }
 
 /// The attached blocks that own the lattice of every block.
-std::vector<Owners> FindOwners(const std::vector<internal::LeafBuffers>& leaves,
-                               const std::vector<LeafLattice*>& lattices) {
-  std::vector<internal::LeafPlace> places;
-  places.reserve(leaves.size());
-  for (const internal::LeafBuffers& leaf : leaves) {
-    const openvdb::Coord& origin = leaf.origin;
-    places.push_back({origin.x() >> 3, origin.y() >> 3, origin.z() >> 3});
-  }
-  const internal::LeafTable table(places);
-  std::vector<Owners> owners(leaves.size());
-  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
-    const auto [x, y, z] = places[i];
+std::vector<Owners> FindOwners(const TsdfVolume::Grids& grids,
+                               const std::deque<LeafLattice>& lattices) {
+  std::vector<Owners> owners(grids.leaves.size());
+  tbb::parallel_for(std::size_t{0}, owners.size(), [&](std::size_t i) {
+    const auto [x, y, z] = internal::PlaceOf(grids.leaves[i].origin);
     for (int k = 0; k < 8; ++k) {
       const int owner =
-          table.Find(x + (k >> 2), y + ((k >> 1) & 1), z + (k & 1)) - 1;
-      owners[i][k] = owner >= 0 && lattices[owner]->attached ? owner : -1;
+          grids.table.Find(x + (k >> 2), y + ((k >> 1) & 1), z + (k & 1)) - 1;
+      owners[i][k] = owner >= 0 && lattices[owner].attached ? owner : -1;
     }
   });
   return owners;
@@ -230,7 +224,7 @@ std::vector<Owners> FindOwners(const std::vector<internal::LeafBuffers>& leaves,
 }  // namespace
 
 struct WarpedIntegrator::Cache {
-  std::unordered_map<openvdb::Coord, LeafLattice> lattices;
+  std::deque<LeafLattice> lattices;  // Of the volume's blocks.
 };
 
 WarpedIntegrator::WarpedIntegrator() : cache_(std::make_unique<Cache>()) {}
@@ -243,19 +237,16 @@ void WarpedIntegrator::FollowGraph(const SkinningIndex& index,
                                    const SkinningChange& change,
                                    const TsdfVolume& volume) {
   const float voxel = static_cast<float>(volume.options().voxel_size);
-  std::vector<std::pair<const openvdb::Coord, LeafLattice>*> attached;
-  for (auto entry = cache_->lattices.begin();
-       entry != cache_->lattices.end();) {
-    if (entry->second.attached) {
-      attached.push_back(&*entry++);
+  const std::vector<internal::LeafBuffers>& leaves = volume.grids().leaves;
+  std::deque<LeafLattice>& lattices = cache_->lattices;
+  tbb::parallel_for(std::size_t{0}, lattices.size(), [&](std::size_t i) {
+    LeafLattice& lattice = lattices[i];
+    if (lattice.attached) {
+      FollowPoints(leaves[i].origin, voxel, index, change, &lattice.own);
+      FollowPoints(leaves[i].origin, voxel, index, change, &lattice.border);
     } else {
-      entry = cache_->lattices.erase(entry);  // A new node may be near enough.
+      lattice.skinned = false;  // A new node may be near enough.
     }
-  }
-  tbb::parallel_for(std::size_t{0}, attached.size(), [&](std::size_t i) {
-    auto& [origin, lattice] = *attached[i];
-    FollowPoints(origin, voxel, index, change, &lattice.own);
-    FollowPoints(origin, voxel, index, change, &lattice.border);
   });
 }
 
@@ -263,39 +254,39 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
                                  const SkinningIndex& index,
                                  const WarpField& warp, double reach,
                                  TsdfVolume* volume) {
-  const std::vector<internal::LeafBuffers> leaves =
-      internal::CollectLeaves(volume);
+  TsdfVolume::Grids& grids = volume->grids();
+  const std::vector<internal::LeafBuffers>& leaves = grids.leaves;
   const internal::FusionImage image(observation, volume->options());
   const float voxel = static_cast<float>(volume->options().voxel_size);
-  std::vector<LeafLattice*> lattices;
+  std::deque<LeafLattice>& lattices = cache_->lattices;
+  lattices.resize(leaves.size());
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    const auto [entry, is_new] = cache_->lattices.try_emplace(leaves[i].origin);
-    lattices.push_back(&entry->second);
-    if (is_new) missing.push_back(i);
+    if (!lattices[i].skinned) missing.push_back(i);
   }
   tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
-    SkinOwn(leaves[missing[m]].origin, voxel, static_cast<float>(reach), index,
-            lattices[missing[m]]);
+    const std::size_t i = missing[m];
+    SkinOwn(leaves[i].origin, voxel, static_cast<float>(reach), index,
+            &lattices[i]);
   });
-  const std::vector<Owners> owners = FindOwners(leaves, lattices);
+  const std::vector<Owners> owners = FindOwners(grids, lattices);
   tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
     const std::size_t i = missing[m];
-    SkinBorder(leaves[i].origin, voxel, owners[i], index, lattices[i]);
+    SkinBorder(leaves[i].origin, voxel, owners[i], index, &lattices[i]);
   });
   std::vector<OwnPoints> own(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
-    own[i] = WarpOwn(leaves[i].origin, voxel, *lattices[i], warp);
+    own[i] = WarpOwn(leaves[i].origin, voxel, lattices[i], warp);
   });
-  std::vector<char> changed(leaves.size());
+  ++grids.time;
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
-    if (!lattices[i]->attached) return;
-    changed[i] = IntegrateLeaf(observation, image, voxel,
-                               GatherLattice(leaves[i].origin, voxel, owners[i],
-                                             own, *lattices[i], warp),
-                               leaves[i]);
+    if (!lattices[i].attached) return;
+    const WarpedLattice warped = GatherLattice(
+        leaves[i].origin, voxel, owners[i], own, lattices[i], warp);
+    if (IntegrateLeaf(observation, image, voxel, warped, leaves[i])) {
+      grids.RecordChange(i);
+    }
   });
-  internal::RecordChanges(leaves, changed, volume);
 }
 
 }  // namespace splitfusion

@@ -19,7 +19,10 @@ TEST(LeafTable, FindsEveryBlockAndNoOther) {
     if (!numbers.emplace(p, places.size() + 1).second) continue;
     places.push_back(p);
   }
-  const LeafTable table(places);
+  LeafTable table;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    table.Insert(places[i], static_cast<int>(i) + 1);
+  }
   std::uniform_int_distribution<std::int32_t> wide(-100, 100);
   for (int i = 0; i < 20000; ++i) {
     const LeafPlace p = {wide(random), wide(random), wide(random)};
@@ -33,7 +36,7 @@ TEST(LeafTable, FindsEveryBlockAndNoOther) {
 }
 
 TEST(LeafTable, HoldsNothingWhereThereIsNothing) {
-  const LeafTable table({});
+  const LeafTable table;
   EXPECT_EQ(table.Find(0, 0, 0), 0);
   EXPECT_EQ(table.Find(-5, 100000, -100000), 0);
 }

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 
 #include "support/expect_input_error.h"
@@ -244,6 +246,31 @@ TEST(TsdfVolume, FilesRoundTrip) {
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.normals, b.normals);
   EXPECT_EQ(a.colors, b.colors);
+}
+
+TEST(TsdfVolume, WithoutColourTheShapeIsTheSame) {
+  TsdfOptions options = kOptions;
+  options.has_color = false;
+  TsdfVolume volume(options);
+  const cv::Mat_<float> depth = WallDepth(SmallCamera(), 1);
+  DepthObservation observation = ObserveAll(SmallCamera(), depth);
+  observation.color.release();
+  AllocateBand(observation, Rigid3d::Identity(), &volume);
+  IntegrateRigid(observation, Rigid3d::Identity(), &volume);
+  const TriangleMesh mesh = ExtractMesh(volume, 0.5);
+  const TriangleMesh colored = FusedMesh(depth);
+  EXPECT_EQ(mesh.vertices, colored.vertices);
+  EXPECT_EQ(mesh.triangles, colored.triangles);
+  const std::array<std::uint8_t, 3> black = {0, 0, 0};
+  EXPECT_EQ(mesh.colors.front(), black);
+  EXPECT_NE(colored.colors.front(), black);
+
+  const TemporaryFolder folder;
+  const std::string path = folder / "volume.vdb";
+  volume.Write(path);
+  const TsdfVolume read = TsdfVolume::Read(path);
+  EXPECT_FALSE(read.options().has_color);
+  EXPECT_EQ(ExtractMesh(read, 0.5).vertices, mesh.vertices);
 }
 
 TEST(TsdfVolume, BadFilesAreRefused) {

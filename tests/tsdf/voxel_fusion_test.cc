@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "splitfusion/lib/geometry/point_map.h"
@@ -18,6 +19,7 @@ namespace internal {
 namespace {
 
 constexpr float kVoxel = 0.01f;
+const FusedPart kAll = {std::numeric_limits<float>::infinity(), false};
 const TsdfOptions kOptions = {kVoxel, 0.04, 20, 5};
 
 /// A block's voxels.
@@ -147,7 +149,7 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
     float steps[3][3];
     for (int i = 0; i < 9; ++i) steps[i / 3][i % 3] = at.steps(i % 3, i / 3);
     const bool changed =
-        FuseRigidLeaf(image_.view(), at.base.data(), steps, block.leaf());
+        FuseRigidLeaf(image_.view(), at.base.data(), steps, kAll, block.leaf());
     EXPECT_TRUE(block == expected) << "round " << round;
     EXPECT_TRUE(changed || block.distance == before.distance);
     EXPECT_TRUE(changed || block.color == before.color);
@@ -160,8 +162,13 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
           7 * static_cast<float>((i >> 2) & 1) * at.steps.col(2);
       std::copy_n(corner.data(), 3, corners[i]);
     }
-    EXPECT_TRUE(image_.MayChange(BoundInImage(image_.view(), corners, 8)) ||
-                block == before);
+    const ImageBox box = BoundInImage(image_.view(), corners, 8);
+    const FusedPart part = image_.MayChange(box);
+    EXPECT_TRUE(box.z_low < part.farthest || block == before);
+    // Nor any part of one.
+    Block bounded = before;
+    FuseRigidLeaf(image_.view(), at.base.data(), steps, part, bounded.leaf());
+    EXPECT_TRUE(bounded == expected) << "round " << round;
   }
   EXPECT_GT(changed_blocks, 50);
   EXPECT_LT(changed_blocks, 250);
@@ -204,9 +211,8 @@ TEST_F(VoxelFusion, AWarpedBlockIsUpdatedWhereItsLatticeCarriesIt) {
     const bool foreign[kLatticeCells] = {};
     FuseWarpedLeaf(image_.view(), lattice, foreign, block.leaf());
     EXPECT_TRUE(block == expected) << "round " << round;
-    EXPECT_TRUE(image_.MayChange(
-                    BoundInImage(image_.view(), lattice, kLatticePoints)) ||
-                block == before);
+    const ImageBox box = BoundInImage(image_.view(), lattice, kLatticePoints);
+    EXPECT_TRUE(box.z_low < image_.MayChange(box).farthest || block == before);
   }
 }
 
@@ -251,7 +257,7 @@ TEST_F(VoxelFusion, FreeSpaceThatIsKnownWellDoesNotChange) {
   const float steps[3][3] = {{kVoxel, 0, 0}, {0, kVoxel, 0}, {0, 0, kVoxel}};
   const auto fuse = [&](float weight) {
     block.weight.fill(weight);
-    return FuseRigidLeaf(image.view(), base, steps, block.leaf());
+    return FuseRigidLeaf(image.view(), base, steps, kAll, block.leaf());
   };
   EXPECT_TRUE(fuse(0));  // Observed for the first time.
   EXPECT_FALSE(fuse(kFirmWeight + 1));
@@ -259,7 +265,7 @@ TEST_F(VoxelFusion, FreeSpaceThatIsKnownWellDoesNotChange) {
   seen_.role.setTo(static_cast<int>(PixelRole::kNone));
   const FusionImage nothing(seen_, options);
   block.weight.fill(0);
-  EXPECT_FALSE(FuseRigidLeaf(nothing.view(), base, steps, block.leaf()));
+  EXPECT_FALSE(FuseRigidLeaf(nothing.view(), base, steps, kAll, block.leaf()));
 }
 
 }  // namespace

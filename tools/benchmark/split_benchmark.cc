@@ -5,6 +5,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
@@ -52,8 +54,8 @@ class SplitFixture : public benchmark::Fixture {
   int person_ = 1;
 };
 
-BENCHMARK_DEFINE_F(SplitFixture, RefinePerson)(benchmark::State& state) {
-  SurfaceObservation observation{person_, PersonMask(), {}, {}, {}};
+BENCHMARK_DEFINE_F(SplitFixture, MinCut)(benchmark::State& state) {
+  const SurfaceObservation observation{person_, PersonMask(), {}, {}, {}};
   for (auto _ : state) {
     const SurfaceEvidence gathered = GatherEvidence(
         observation, compared_, GraphCutOptions(), PriorOptions());
@@ -62,6 +64,49 @@ BENCHMARK_DEFINE_F(SplitFixture, RefinePerson)(benchmark::State& state) {
                                            GraphCutOptions()));
   }
   state.counters["pixels"] = cv::countNonZero(observation.mask);
+}
+
+/// Weight of the edge between two pixels, as MinCut has it but for its cases.
+float BarestWeight(const PointMap& points, const cv::Mat_<cv::Vec3b>& color,
+                   const cv::Point& p, const cv::Point& q) {
+  const cv::Vec3f step = points.points(q) - points.points(p);
+  const cv::Vec3f& np = points.normals(p);
+  const cv::Vec3f& nq = points.normals(q);
+  const float ratio = std::max(std::abs(np.dot(step)), std::abs(nq.dot(step))) *
+                      (100 / (1 + points.points(p)[2]));
+  const cv::Vec3b &a = color(p), &b = color(q);
+  float square = 0;
+  for (int c = 0; c < 3; ++c) square += float(a[c] - b[c]) * (a[c] - b[c]);
+  return std::exp(-ratio * ratio - (1 - np.dot(nq))) *
+         (1 - square / (square + 1600));
+}
+
+/// The weights of all edges of the crop, one after the other, and no cut.
+BENCHMARK_DEFINE_F(SplitFixture, MinCutFloor)(benchmark::State& state) {
+  const SurfaceObservation observation{person_, PersonMask(), {}, {}, {}};
+  const SurfaceEvidence gathered =
+      GatherEvidence(observation, compared_, GraphCutOptions(), PriorOptions());
+  const cv::Rect inner(gathered.crop.x + 1, gathered.crop.y,
+                       gathered.crop.width - 2, gathered.crop.height - 1);
+  const cv::Mat_<cv::Vec3b> color = frame_.frame.color;
+  const cv::Point offsets[4] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+  cv::Mat_<cv::Vec4f> weights(inner.size());
+  std::size_t edges = 0;
+  for (auto _ : state) {
+    edges = 0;
+    for (int v = 0; v < inner.height; ++v) {
+      for (int u = 0; u < inner.width; ++u) {
+        const cv::Point p(inner.x + u, inner.y + v);
+        if (gathered.evidence(v, u + 1) <= kSurelyBackground) continue;
+        if (!(points_.points(p)[2] > 0)) continue;
+        for (int k = 0; k < 4; ++k, ++edges) {
+          weights(v, u)[k] = BarestWeight(points_, color, p, p + offsets[k]);
+        }
+      }
+    }
+    benchmark::DoNotOptimize(weights.data);
+  }
+  state.counters["edges"] = static_cast<double>(edges);
 }
 
 BENCHMARK_DEFINE_F(SplitFixture, MatchInstances)(benchmark::State& state) {
@@ -108,8 +153,9 @@ BENCHMARK_DEFINE_F(SplitFixture, Network)(benchmark::State& state) {
   }
 }
 
-BENCHMARK_REGISTER_F(SplitFixture, RefinePerson)
-    ->Name("refinement")
+BENCHMARK_REGISTER_F(SplitFixture, MinCut)->Name("min_cut")->UseRealTime();
+BENCHMARK_REGISTER_F(SplitFixture, MinCutFloor)
+    ->Name("min_cut/floor")
     ->UseRealTime();
 BENCHMARK_REGISTER_F(SplitFixture, MatchInstances)
     ->Name("matching")

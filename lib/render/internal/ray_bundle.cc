@@ -49,14 +49,25 @@ bool StepRays(const RayVolume& volume, RayBundle* rays) {
     at.j[r] = Nearest(at.y[r]);
     at.k[r] = Nearest(at.z[r]);
   }
-  float distance[kRays], weight[kRays];
+  // All voxels are asked for before the first is read.
+  const float* voxel_distance[kRays];
+  const float* voxel_weight[kRays];
+  float has_inside[kRays];
   for (int r = 0; r < kRays; ++r) {
     const std::int32_t leaf =
         volume.table.Find(at.i[r] >> 3, at.j[r] >> 3, at.k[r] >> 3);
     const std::int32_t offset =
         (at.i[r] & 7) << 6 | (at.j[r] & 7) << 3 | (at.k[r] & 7);
-    distance[r] = volume.distance[leaf][offset];
-    weight[r] = volume.weight[leaf][offset];
+    voxel_distance[r] = volume.distance[leaf] + offset;
+    voxel_weight[r] = volume.weight[leaf] + offset;
+    __builtin_prefetch(voxel_distance[r]);
+    __builtin_prefetch(voxel_weight[r]);
+    has_inside[r] = volume.has_inside[leaf];
+  }
+  float distance[kRays], weight[kRays];
+  for (int r = 0; r < kRays; ++r) {
+    distance[r] = *voxel_distance[r];
+    weight[r] = *voxel_weight[r];
   }
   int any_stopped = 0;
   for (int r = 0; r < kRays; ++r) {
@@ -78,7 +89,11 @@ bool StepRays(const RayVolume& volume, RayBundle* rays) {
     leave = Lower(leave, ToWall(at.y[r], at.j[r], rays->step_y[r]));
     leave = Lower(leave, ToWall(at.z[r], at.k[r], rays->step_z[r]));
     const float skipped = t + (leave < 0 ? 0.0f : leave) + 1e-4f;
-    const float next = weight[r] < 0 ? skipped : walked;
+    // The last sample of a block tells whether the surface is crossed next.
+    const float crossed = skipped - rays->voxel_step[r];
+    const float to_end = crossed > walked ? crossed : walked;
+    const float there = has_inside[r] > 0 ? walked : to_end;
+    const float next = weight[r] < 0 ? skipped : there;
     const bool ends = !at_rest & !(next < rays->t_end[r]);
     rays->stopped[r] = crosses | ends ? 1 : 0;
     any_stopped |= rays->stopped[r];

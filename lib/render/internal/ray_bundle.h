@@ -10,18 +10,19 @@ namespace internal {
 
 /// What rays walk through; index space of the volume, distances in metres.
 struct RayVolume {
-  LeafTable table;
+  const LeafTable& table;
   std::vector<const float*> distance;  // By block number; [0] is of no block.
   std::vector<const float*> weight;
-  float origin[3];   // Of the rays.
-  float voxel_size;  // Metres.
-  float min_weight;  // Voxels observed less are not surface.
+  std::vector<char> has_inside;  // Whether there may be surface.
+  float origin[3];               // Of the rays.
+  float voxel_size;              // Metres.
+  float min_weight;              // Voxels observed less are not surface.
 };
 
 /// Rays that walk through a volume side by side, so that one does not wait for
 /// the memory of another. A ray is at origin + t * step at z-depth t.
 struct RayBundle {
-  static constexpr int kRays = 16;
+  static constexpr int kRays = 32;
 
   float t[kRays];
   float t_end[kRays];  // A ray is at rest where t >= t_end.
@@ -35,8 +36,9 @@ struct RayBundle {
 };
 
 /// Takes the next sample of every ray that is not at rest and moves it on: over
-/// a block that is not there, by half the distance in free space, by less than
-/// a voxel elsewhere. Returns whether any ray stopped.
+/// a block that is not there, to the end of one without a surface, by half the
+/// distance in free space, by less than a voxel elsewhere. Returns whether any
+/// ray stopped.
 bool StepRays(const RayVolume& volume, RayBundle* rays);
 
 }  // namespace internal

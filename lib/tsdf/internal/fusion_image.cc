@@ -6,18 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "splitfusion/lib/geometry/point_map.h"
-
 namespace splitfusion {
 namespace internal {
 namespace {
 
-/// A voxel is clearly empty where it is nearer than the measured depth by the
-/// truncation and as many sigma of the depth.
-constexpr float kFreeSpaceSigmas = 3.0f;
-
-constexpr float kNever = std::numeric_limits<float>::infinity();
-constexpr FusionPixel kNoPixel = {0, 0, kNever, kNever};
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr FusionPixel kNoPixel = {-kInfinity, 0};
 
 }  // namespace
 
@@ -30,10 +24,9 @@ FusionImage::FusionImage(const DepthObservation& observation,
   pixels_.resize(static_cast<std::size_t>(camera.width) * camera.height + 1);
   pixels_.back() = kNoPixel;
   reach_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
-  color_ = observation.color.isContinuous() ? observation.color
-                                            : observation.color.clone();
+  if (options.has_color) rgb_.resize(pixels_.size());
   view_ = {pixels_.data(),
-           color_.ptr<std::uint8_t>(0),
+           rgb_.data(),
            camera.width,
            camera.height,
            static_cast<float>(camera.fx),
@@ -41,7 +34,6 @@ FusionImage::FusionImage(const DepthObservation& observation,
            static_cast<float>(camera.cx),
            static_cast<float>(camera.cy),
            truncation_,
-           std::nextafter(truncation_, kNever),
            static_cast<float>(options.max_weight),
            static_cast<float>(options.max_free_weight)};
   tbb::parallel_for(0, rows_, [&](int tile_row) {
@@ -62,17 +54,21 @@ void FusionImage::FillRow(const DepthObservation& observation, int v) {
       pixels[u] = kNoPixel;
       continue;
     }
-    pixels[u] = {depth[u], weight[u],
-                 pixel_role == PixelRole::kWrite ? -truncation_
-                                                 : view_.beyond_truncation,
-                 truncation_ + kFreeSpaceSigmas * DepthSigma(depth[u])};
-    reach[u / kTile] =
-        std::max(reach[u / kTile], depth[u] - pixels[u].change_from);
+    const bool writes = pixel_role == PixelRole::kWrite;
+    pixels[u] = {depth[u], writes ? weight[u] : -weight[u]};
+    reach[u / kTile] = std::max(
+        reach[u / kTile], depth[u] + (writes ? truncation_ : -truncation_));
+  }
+  if (rgb_.empty()) return;
+  const cv::Vec3b* bgr = observation.color.ptr<cv::Vec3b>(v);
+  std::int32_t* rgb = &rgb_[static_cast<std::size_t>(v) * view_.width];
+  for (int u = 0; u < view_.width; ++u) {
+    rgb[u] = bgr[u][2] | bgr[u][1] << 8 | bgr[u][0] << 16;
   }
 }
 
-bool FusionImage::MayChange(const ImageBox& box) const {
-  if (!box.in_front) return true;
+FusedPart FusionImage::MayChange(const ImageBox& box) const {
+  if (!box.in_front) return {kInfinity, false};
   constexpr float kPixelMargin = 1;      // Rounding to pixels, and of floats.
   constexpr float kDepthMargin = 1e-3f;  // Metres; rounding.
   const float u_low = box.u_low - kPixelMargin;
@@ -81,7 +77,7 @@ bool FusionImage::MayChange(const ImageBox& box) const {
   const float v_high = box.v_high + kPixelMargin;
   if (!(u_high >= 0 && v_high >= 0 && u_low < static_cast<float>(view_.width) &&
         v_low < static_cast<float>(view_.height))) {
-    return false;
+    return {-kInfinity, false};
   }
   const auto tile = [](float pixel, int count) {
     const float clamped =
@@ -90,12 +86,16 @@ bool FusionImage::MayChange(const ImageBox& box) const {
   };
   const int u_end = tile(u_high, columns_);
   const int v_end = tile(v_high, rows_);
+  float farthest = -kInfinity;
   for (int v = tile(v_low, rows_); v <= v_end; ++v) {
     for (int u = tile(u_low, columns_); u <= u_end; ++u) {
-      if (box.z_low < reach_[v * columns_ + u] + kDepthMargin) return true;
+      farthest = std::max(farthest, reach_[v * columns_ + u]);
     }
   }
-  return false;
+  const bool in_image = u_low >= 0 && v_low >= 0 &&
+                        u_high <= static_cast<float>(view_.width - 1) &&
+                        v_high <= static_cast<float>(view_.height - 1);
+  return {farthest + kDepthMargin, in_image};
 }
 
 }  // namespace internal

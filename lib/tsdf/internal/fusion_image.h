@@ -1,7 +1,7 @@
 #ifndef SPLITFUSION_LIB_TSDF_INTERNAL_FUSION_IMAGE_H_
 #define SPLITFUSION_LIB_TSDF_INTERNAL_FUSION_IMAGE_H_
 
-#include <opencv2/core.hpp>
+#include <cstdint>
 #include <vector>
 
 #include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
@@ -14,7 +14,7 @@ namespace internal {
 /// of the image how far from the camera it can change anything.
 class FusionImage {
  public:
-  /// Keeps hold of the observation's colour, not of its other images.
+  /// Keeps hold of nothing of the observation.
   FusionImage(const DepthObservation& observation, const TsdfOptions& options);
   /// The view points into it.
   FusionImage(const FusionImage&) = delete;
@@ -24,12 +24,12 @@ class FusionImage {
   /// For FuseRigidLeaf() and FuseWarpedLeaf().
   const FusionView& view() const { return view_; }
 
-  /// Whether any voxel within a box could be changed. Says yes where it is not
-  /// sure.
-  bool MayChange(const ImageBox& box) const;
+  /// What of the voxels within a box can be changed: rather too much than not
+  /// enough, and none that is not nearer than `farthest`.
+  FusedPart MayChange(const ImageBox& box) const;
 
  private:
-  static constexpr int kTile = 16;  // Pixels.
+  static constexpr int kTile = 8;  // Pixels.
 
   void FillRow(const DepthObservation& observation, int v);
 
@@ -37,7 +37,7 @@ class FusionImage {
   int columns_, rows_;  // Of tiles.
   std::vector<FusionPixel> pixels_;
   std::vector<float> reach_;  // Per tile: farthest z-depth of any change.
-  cv::Mat color_;
+  std::vector<std::int32_t> rgb_;
   FusionView view_;
 };
 

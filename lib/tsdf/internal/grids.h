@@ -3,30 +3,13 @@
 
 #include <openvdb/openvdb.h>
 
-#include <unordered_map>
 #include <vector>
 
+#include "splitfusion/lib/tsdf/internal/leaf_table.h"
 #include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
 namespace splitfusion {
-
-/// The grids of a volume. All three have the same leaves.
-struct TsdfVolume::Grids {
-  openvdb::FloatGrid::Ptr distance;
-  openvdb::FloatGrid::Ptr weight;
-  openvdb::Vec3SGrid::Ptr color;
-
-  /// When a block, by its origin, last changed in a way that its mesh may show:
-  /// the `time` of that integration.
-  std::unordered_map<openvdb::Coord, int> changed;
-  /// Integrations so far.
-  int time = 0;
-
-  /// Makes sure that the block with this origin exists in all grids.
-  void Touch(const openvdb::Coord& origin);
-};
-
 namespace internal {
 
 constexpr int kLeafSize = 8;      // Voxels along a leaf's edge.
@@ -37,31 +20,49 @@ struct LeafBuffers {
   openvdb::Coord origin;
   float* distance = nullptr;
   float* weight = nullptr;
-  openvdb::Vec3s* color = nullptr;
+  openvdb::Vec3s* color = nullptr;  // Null: without colour.
 };
 
-/// The same, to be read.
-struct ConstLeafBuffers {
-  openvdb::Coord origin;
-  const float* distance = nullptr;
-  const float* weight = nullptr;
-  const openvdb::Vec3s* color = nullptr;
+/// What fusion made of a block.
+struct LeafState {
+  int changed = 0;          // Last integration that its mesh may show.
+  bool has_inside = false;  // Some observed distance is not positive.
 };
-
-/// Buffers of all blocks, in the tree's order.
-std::vector<LeafBuffers> CollectLeaves(TsdfVolume* volume);
-
-/// Buffers of all blocks, in the tree's order.
-std::vector<ConstLeafBuffers> CollectLeaves(const TsdfVolume& volume);
 
 /// The same for the loops that are free of OpenVDB.
 FusedLeaf ToFused(const LeafBuffers& leaf);
 
-/// Notes which blocks an integration changed, see TsdfVolume::Grids::changed.
-void RecordChanges(const std::vector<LeafBuffers>& leaves,
-                   const std::vector<char>& changed, TsdfVolume* volume);
+/// Place of the block that a voxel is in.
+inline LeafPlace PlaceOf(const openvdb::Coord& voxel) {
+  return {voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3};
+}
 
 }  // namespace internal
+
+/// The grids of a volume. All have the same leaves.
+struct TsdfVolume::Grids {
+  openvdb::FloatGrid::Ptr distance;
+  openvdb::FloatGrid::Ptr weight;
+  openvdb::Vec3SGrid::Ptr color;  // Null: without colour.
+
+  /// All blocks in the order in which they came to be, and their numbers + 1 by
+  /// their place.
+  std::vector<internal::LeafBuffers> leaves;
+  std::vector<internal::LeafState> states;  // Of the leaves.
+  internal::LeafTable table;
+  /// Integrations so far.
+  int time = 0;
+
+  /// Makes sure that the block with this origin exists in all grids.
+  void Touch(const openvdb::Coord& origin);
+
+  /// Enters the blocks of grids that were filled by others.
+  void Enter();
+
+  /// Notes that the present integration changed a block.
+  void RecordChange(std::size_t leaf);
+};
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_TSDF_INTERNAL_GRIDS_H_

@@ -4,16 +4,6 @@ namespace splitfusion {
 namespace internal {
 namespace {
 
-std::vector<LeafPlace> Places(const std::vector<ConstLeafBuffers>& leaves) {
-  std::vector<LeafPlace> places;
-  places.reserve(leaves.size());
-  for (const ConstLeafBuffers& leaf : leaves) {
-    const openvdb::Coord& o = leaf.origin;
-    places.push_back({o.x() >> 3, o.y() >> 3, o.z() >> 3});
-  }
-  return places;
-}
-
 /// A point of index space between voxels: the lowest of the eight, counted from
 /// a block's origin, and how far it is on.
 struct Cell {
@@ -50,54 +40,56 @@ float Trilinear(const Cell& cell, const Read& read) {
 }  // namespace
 
 LeafLookup::LeafLookup(const TsdfVolume& volume)
-    : leaves_(CollectLeaves(volume)),
-      table_(Places(leaves_)),
-      background_(volume.grids().distance->background()) {}
+    : grids_(volume.grids()),
+      free_space_(kLeafVoxels, grids_.distance->background()),
+      unobserved_(kLeafVoxels, 0.0f),
+      black_(kLeafVoxels, openvdb::Vec3s(0, 0, 0)),
+      nowhere_{{}, free_space_.data(), unobserved_.data(), black_.data()} {}
 
-std::vector<openvdb::Coord> LeafLookup::Origins() const {
-  std::vector<openvdb::Coord> origins;
-  origins.reserve(leaves_.size());
-  for (const ConstLeafBuffers& leaf : leaves_) origins.push_back(leaf.origin);
-  return origins;
+bool LeafLookup::MayHaveSurface(const openvdb::Coord& origin) const {
+  const auto [x, y, z] = PlaceOf(origin);
+  for (int k = 0; k < 8; ++k) {
+    const std::int32_t number =
+        grids_.table.Find(x + (k >> 2), y + ((k >> 1) & 1), z + (k & 1));
+    if (number != 0 && grids_.states[number - 1].has_inside) return true;
+  }
+  return false;
 }
 
 PaddedLeaf::PaddedLeaf(const LeafLookup& lookup, const openvdb::Coord& origin)
     : origin_(origin) {
   for (int i = 0; i < 27; ++i) {
-    leaves_[i] = lookup.Find(origin.offsetBy(kLeafSize * (i / 9 - 1),
-                                             kLeafSize * (i / 3 % 3 - 1),
-                                             kLeafSize * (i % 3 - 1)));
+    leaves_[i] = &lookup.Find(origin.offsetBy(kLeafSize * (i / 9 - 1),
+                                              kLeafSize * (i / 3 % 3 - 1),
+                                              kLeafSize * (i % 3 - 1)));
   }
   CopyRows(
-      [&](const ConstLeafBuffers* leaf, int offset) {
-        return leaf == nullptr ? lookup.background() : leaf->distance[offset];
-      },
+      &LeafBuffers::distance, [](float distance) { return distance; },
       &distance_);
 }
 
-template <typename Source, typename Target>
-void PaddedLeaf::CopyRows(const Source& source, Target* target) const {
+template <typename Convert, typename Target>
+void PaddedLeaf::CopyRows(float* LeafBuffers::*buffer, const Convert& convert,
+                          Target* target) const {
   for (int x = -1; x < kSide - 1; ++x) {
     for (int y = -1; y < kSide - 1; ++y) {
       const int row = (x & 7) << 6 | (y & 7) << 3;
-      const ConstLeafBuffers* const* leaves = &leaves_[Neighbor(x, y, -1)];
+      const LeafBuffers* const* leaves = &leaves_[Neighbor(x, y, -1)];
+      const float* here = leaves[1]->*buffer + row;
+      const float* after = leaves[2]->*buffer + row;
       auto* to = &(*target)[Index(x, y, -1)];
-      to[0] = source(leaves[0], row + 7);
-      for (int z = 0; z < kLeafSize; ++z) {
-        to[z + 1] = source(leaves[1], row + z);
-      }
-      to[kLeafSize + 1] = source(leaves[2], row);
-      to[kLeafSize + 2] = source(leaves[2], row + 1);
+      to[0] = convert((leaves[0]->*buffer)[row + kLeafSize - 1]);
+      for (int z = 0; z < kLeafSize; ++z) to[z + 1] = convert(here[z]);
+      to[kLeafSize + 1] = convert(after[0]);
+      to[kLeafSize + 2] = convert(after[1]);
     }
   }
 }
 
 void PaddedLeaf::LoadObserved(float min_weight) {
   CopyRows(
-      [&](const ConstLeafBuffers* leaf, int offset) -> char {
-        return (leaf == nullptr ? 0.0f : leaf->weight[offset]) >= min_weight;
-      },
-      &observed_);
+      &LeafBuffers::weight,
+      [&](float weight) -> char { return weight >= min_weight; }, &observed_);
 }
 
 std::uint32_t PaddedLeaf::Inside(int x, int y) const {
@@ -135,10 +127,10 @@ openvdb::Vec3s PaddedLeaf::Color(const openvdb::Vec3d& p) const {
     const int x = cell.low[0] + (corner >> 2);
     const int y = cell.low[1] + ((corner >> 1) & 1);
     const int z = cell.low[2] + (corner & 1);
-    const ConstLeafBuffers* leaf = leaves_[Neighbor(x, y, z)];
-    corners[corner] = leaf == nullptr
+    const openvdb::Vec3s* color = leaves_[Neighbor(x, y, z)]->color;
+    corners[corner] = color == nullptr
                           ? openvdb::Vec3s(0, 0, 0)
-                          : leaf->color[(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
+                          : color[(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
   }
   openvdb::Vec3s color;
   for (int channel = 0; channel < 3; ++channel) {

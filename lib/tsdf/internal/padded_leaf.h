@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "splitfusion/lib/tsdf/internal/grids.h"
-#include "splitfusion/lib/tsdf/internal/leaf_table.h"
 
 namespace splitfusion {
 namespace internal {
@@ -17,23 +16,23 @@ class LeafLookup {
   /// The volume must not change while this is in use.
   explicit LeafLookup(const TsdfVolume& volume);
 
-  /// Origins of the blocks, in the tree's order.
-  std::vector<openvdb::Coord> Origins() const;
-
-  /// Block that holds a voxel; null if there is none.
-  const ConstLeafBuffers* Find(const openvdb::Coord& voxel) const {
-    const std::int32_t number =
-        table_.Find(voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3);
-    return number == 0 ? nullptr : &leaves_[number - 1];
+  /// Block that holds a voxel; free space that was never
+  /// observed if there is none.
+  const LeafBuffers& Find(const openvdb::Coord& voxel) const {
+    const auto [x, y, z] = PlaceOf(voxel);
+    const std::int32_t number = grids_.table.Find(x, y, z);
+    return number == 0 ? nowhere_ : grids_.leaves[number - 1];
   }
 
-  /// Distance where there is no block, metres.
-  float background() const { return background_; }
+  /// Whether the surface may pass through the cells of a block, which need not
+  /// be there.
+  bool MayHaveSurface(const openvdb::Coord& origin) const;
 
  private:
-  std::vector<ConstLeafBuffers> leaves_;
-  LeafTable table_;
-  float background_;
+  const TsdfVolume::Grids& grids_;
+  std::vector<float> free_space_, unobserved_;
+  std::vector<openvdb::Vec3s> black_;
+  LeafBuffers nowhere_;
 };
 
 /// A block with a border, all that its mesh depends on: voxels -1 to 9 along
@@ -76,11 +75,13 @@ class PaddedLeaf {
   static int Neighbor(int x, int y, int z) {
     return 9 * ((x >> 3) + 1) + 3 * ((y >> 3) + 1) + (z >> 3) + 1;
   }
-  template <typename Source, typename Target>
-  void CopyRows(const Source& source, Target* target) const;
+  /// convert(value) of all voxels of one kind of buffer.
+  template <typename Convert, typename Target>
+  void CopyRows(float* LeafBuffers::*buffer, const Convert& convert,
+                Target* target) const;
 
   openvdb::Coord origin_;
-  std::array<const ConstLeafBuffers*, 27> leaves_;
+  std::array<const LeafBuffers*, 27> leaves_;
   std::array<float, kSide * kSide * kSide> distance_;
   std::array<char, kSide * kSide * kSide> observed_;
 };

@@ -6,29 +6,25 @@
 namespace splitfusion {
 namespace internal {
 
-/// What one pixel does to the voxels on its ray. A voxel is changed where its
-/// distance along the ray, not yet truncated, is at least `change_from`; it is
-/// empty for sure where the distance is above `free_above`. Metres.
+/// What one pixel does to the voxels on its ray.
 struct FusionPixel {
-  float depth;
-  float weight;
-  float change_from;
-  float free_above;
+  float depth;   ///< Metres; - infinity: it changes nothing.
+  float weight;  ///< Confidence; with a minus (-0, too) it only carves.
 };
 
 /// An observation, for loops that are free of Eigen and OpenCV.
 struct FusionView {
   const FusionPixel* pixels;  ///< Row by row; one more at the end changes none.
-  const std::uint8_t* color;  ///< Row by row, BGR.
+  /// The same of colours, red in the lowest byte; not needed without colour.
+  const std::int32_t* rgb;
   int width, height;
   float fx, fy, cx, cy;
-  float truncation;         ///< Metres.
-  float beyond_truncation;  ///< The next larger number.
+  float truncation;  ///< Metres.
   float max_weight, max_free_weight;
 };
 
 /// Buffers of the block that is fused into; `color`: red, green and blue of
-/// every voxel, 0..1.
+/// every voxel, 0..1; null: there is none.
 struct FusedLeaf {
   float* distance;
   float* weight;
@@ -38,11 +34,19 @@ struct FusedLeaf {
 /// No mesh asks whether a voxel has been observed more than this.
 constexpr float kFirmWeight = 8;
 
-/// Fuses into a block whose voxel (x, y, z) is at base + x steps[0] + y steps[1]
+/// What of a block may change.
+struct FusedPart {
+  float farthest;  ///< Nothing that is farther away: z-depth, metres.
+  bool in_image;   ///< All of its voxels are seen.
+};
+
+/// Fuses into a block whose voxel (x, y, z) is at base + x steps[0] + y
+/// steps[1]
 /// + z steps[2], camera frame, metres. Returns whether a mesh may show it: a
 /// distance, a colour, or a weight below kFirmWeight is another one.
 bool FuseRigidLeaf(const FusionView& view, const float base[3],
-                   const float steps[3][3], const FusedLeaf& leaf);
+                   const float steps[3][3], const FusedPart& part,
+                   const FusedLeaf& leaf);
 
 /// Points of a block that are warped: every fourth voxel, 3 x 3 x 3.
 constexpr int kLatticePoints = 27;
@@ -56,6 +60,9 @@ constexpr int kLatticeCells = 8;
 bool FuseWarpedLeaf(const FusionView& view,
                     const float lattice[kLatticePoints][3],
                     const bool foreign[kLatticeCells], const FusedLeaf& leaf);
+
+/// Whether any distance of a block that has been observed is not positive.
+bool HasInside(const FusedLeaf& leaf);
 
 /// Bounding box of points in depth and in the image.
 struct ImageBox {
