@@ -43,7 +43,7 @@ DEFINE_string(trust_region, "levenberg_marquardt",
               "levenberg_marquardt or dogleg.");
 DEFINE_int32(solver_threads, 1,
              "Threads of Ceres; more change the last digits.");
-DEFINE_int32(solver_iterations, 2, "Solver iterations per association.");
+DEFINE_int32(solver_iterations, 1, "Solver iterations per association.");
 DEFINE_int32(linear_iterations, 100,
              "Conjugate gradient iterations of a step at most (gn_pcg, cgnr).");
 DEFINE_double(eta, 0.01,

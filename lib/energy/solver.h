@@ -25,7 +25,7 @@ struct SolverOptions {
   /// levenberg_marquardt or dogleg.
   std::string trust_region = "levenberg_marquardt";
   int threads = 1;         ///< Of Ceres; more change the last digits.
-  int max_iterations = 2;  ///< Per association.
+  int max_iterations = 1;  ///< Per association: a new one tells more.
   int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.
   double eta = 0.01;  ///< For cgnr and gn_pcg: relative accuracy of a step.
   /// Converged when the cost changes by less, relative.
