@@ -76,6 +76,19 @@ ModelGrey SmoothGrey(const cv::Mat_<cv::Vec3b>& color, const cv::Mat& mask,
   return grey;
 }
 
+/// Number of the pixels with a normal before each row, and of all.
+std::vector<int> FirstOfRows(const cv::Mat_<cv::Vec3f>& normals) {
+  std::vector<int> first = {0};
+  for (int v = 0; v < normals.rows; ++v) {
+    const cv::Vec3f* row = normals[v];
+    first.push_back(first.back() +
+                    static_cast<int>(std::count_if(
+                        row, row + normals.cols,
+                        [](const cv::Vec3f& n) { return n[2] != 0; })));
+  }
+  return first;
+}
+
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
 cv::Mat_<float> DepthAlone(const std::vector<Eigen::Vector3f>& vertices,
@@ -142,7 +155,7 @@ SurfacePrediction ToPrediction(const MeshRendering& rendering,
   LabelImage labels(rendering.camera.height, rendering.camera.width,
                     static_cast<std::uint16_t>(0));
   cv::Mat_<float> depth = rendering.raster.depth.clone();
-  for (int v = 0; v < labels.rows; ++v) {
+  tbb::parallel_for(0, labels.rows, [&](int v) {
     for (int u = 0; u < labels.cols; ++u) {
       const int triangle = rendering.raster.triangle(v, u);
       for (const auto& [id, first] : rendering.first_triangle) {
@@ -154,7 +167,7 @@ SurfacePrediction ToPrediction(const MeshRendering& rendering,
       labels(v, u) = 0;
       depth(v, u) = behind;
     }
-  }
+  });
   SurfacePrediction prediction;
   const cv::Size size(full.width, full.height);
   cv::resize(labels, prediction.labels, size, 0, 0, cv::INTER_NEAREST);
@@ -218,12 +231,14 @@ std::vector<ModelSample> BackgroundSamples(const ModelMap& cast,
   cv::extractChannel(cast.points, depth, 2);
   const PointMap map = ComputePointMap(depth, cast.camera);
   const ModelGrey grey = SmoothGrey(cast.color, depth > 0, stride);
-  std::vector<ModelSample> samples;
-  for (int v = 0; v < depth.rows; ++v) {
+  const std::vector<int> first = FirstOfRows(map.normals);
+  std::vector<ModelSample> samples(first.back());
+  tbb::parallel_for(0, depth.rows, [&](int v) {
+    int next = first[v];
     for (int u = 0; u < depth.cols; ++u) {
       const cv::Vec3f& normal = map.normals(v, u);
       if (normal[2] == 0) continue;
-      ModelSample sample;
+      ModelSample& sample = samples[next++];
       sample.point = canonical_from_camera * ToEigen(map.points(v, u));
       sample.normal = canonical_from_camera.linear() * ToEigen(normal);
       sample.intensity = {grey.fine(v, u), grey.coarse(v, u)};
@@ -231,9 +246,8 @@ std::vector<ModelSample> BackgroundSamples(const ModelMap& cast,
       sample.v = v * stride;
       sample.skinning.count = 1;
       sample.skinning.weights[0] = 1;
-      samples.push_back(sample);
     }
-  }
+  });
   return samples;
 }
 

@@ -120,14 +120,16 @@ struct Body {
   std::set<int> behind;  // Segments in front of it.
 };
 
+bool IsBody(const InstanceRegistry& registry, const Segment& segment) {
+  return segment.surface != 0 &&
+         registry.at(segment.surface).kind == SurfaceKind::kNonRigid;
+}
+
 std::vector<Body> FindBodies(const InstanceRegistry& registry,
                              const SplitWork& work) {
   std::vector<Body> bodies;
   for (std::size_t i = 0; i < work.segments.size(); ++i) {
-    const int surface = work.segments[i].surface;
-    if (surface == 0 || registry.at(surface).kind != SurfaceKind::kNonRigid) {
-      continue;
-    }
+    if (!IsBody(registry, work.segments[i])) continue;
     const int index = static_cast<int>(i);
     Body body{index + 1,
               MakePatch(SegmentPixels(index, work.segment_labels), work),
@@ -236,7 +238,10 @@ bool StandsFree(const Patch& piece, const SplitWork& work) {
 }  // namespace
 
 void ClaimLooseParts(const InstanceRegistry& registry, SplitWork* work) {
-  if (!IsMapped(*work)) return;
+  const bool has_bodies = std::any_of(
+      work->segments.begin(), work->segments.end(),
+      [&](const Segment& segment) { return IsBody(registry, segment); });
+  if (!has_bodies || !IsMapped(*work)) return;
   const Unclaimed unclaimed = FindUnclaimed(*work);
   cv::Mat_<int> pieces;
   cv::Mat stats, centroids;

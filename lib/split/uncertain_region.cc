@@ -1,5 +1,7 @@
 #include "splitfusion/lib/split/uncertain_region.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -54,14 +56,14 @@ cv::Mat_<uchar> DrawUncertainRegion(const UncertainInput& input,
   cv::Mat background = (input.labels == 0) & ~input.unconfirmed;
   cv::Mat_<float> distance;
   cv::distanceTransform(background, distance, cv::DIST_L2, 3);
-  for (int v = 0; v < uncertain.rows; ++v) {
+  tbb::parallel_for(0, uncertain.rows, [&](int v) {
     for (int u = 0; u < uncertain.cols; ++u) {
       if (input.labels(v, u) > 0) continue;
       if (IsUncertain(input, options, distance(v, u), u, v)) {
         uncertain(v, u) = 255;
       }
     }
-  }
+  });
   return uncertain;
 }
 
