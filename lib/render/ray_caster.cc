@@ -106,32 +106,22 @@ class Refiner {
         origin_(volume.origin[0], volume.origin[1], volume.origin[2]) {}
 
   /// Finds the crossing near `t`, where the distance is not positive any more,
-  /// by false position: the distance is nearly linear along the ray.
+  /// by Newton's method: the distance is nearly linear along the ray. 0 if it
+  /// is not there after all.
   float Refine(const Eigen::Vector3f& step, float t, float voxel_step,
                Eigen::Vector3f* gradient) const {
-    const Eigen::Vector3f& origin = origin_;
-    float near = t - 2.5f * voxel_step;
-    float far = t + voxel_step;
-    Sample sample, at_near, at_far;
-    if (!Interpolate(origin + far * step, &at_far)) return 0;
-    if (!Interpolate(origin + near * step, &at_near)) return 0;
-    if (at_near.distance <= 0 || at_far.distance > 0) return 0;
-    constexpr int kRefinements = 3;
+    const float reach = 2.5f * voxel_step;
+    float place = t - 0.5f * voxel_step;
+    constexpr int kRefinements = 2;
     for (int i = 0; i < kRefinements; ++i) {
-      const float ratio =
-          at_near.distance / (at_near.distance - at_far.distance);
-      const float middle =
-          near + std::clamp(ratio, 0.05f, 0.95f) * (far - near);
-      if (!Interpolate(origin + middle * step, &sample)) return 0;
-      if (sample.distance > 0) {
-        near = middle, at_near = sample;
-      } else {
-        far = middle, at_far = sample;
-      }
+      Sample sample;
+      if (!Interpolate(origin_ + place * step, &sample)) return 0;
+      const float slope = sample.gradient.dot(step);
+      if (!(slope < 0)) return 0;
+      place -= std::clamp(sample.distance / slope, -reach, reach);
+      *gradient = sample.gradient;
     }
-    *gradient = sample.gradient;
-    const float ratio = at_near.distance / (at_near.distance - at_far.distance);
-    return near + ratio * (far - near);
+    return std::abs(place - t) <= reach ? place : 0;
   }
 
   /// The point of index space at z-depth `t` of a ray.
