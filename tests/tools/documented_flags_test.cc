@@ -107,6 +107,18 @@ std::map<std::string, Flags> KnownFlags() {
   return known;
 }
 
+/// Flags that the comment at the top of a script lists.
+Flags FlagsOfScript(const std::string& path) {
+  static const std::regex listed(R"(^#   --([a-z_]+) .*)");
+  std::ifstream stream(RepositoryRoot() / path);
+  Flags flags;
+  std::smatch found;
+  for (std::string line; std::getline(stream, line);) {
+    if (std::regex_match(line, found, listed)) flags.insert(found[1]);
+  }
+  return flags;
+}
+
 TEST(DocumentedFlags, AreThoseOfThePrograms) {
   if (!fs::exists(RepositoryRoot() / "docs/report_format.md")) {
     GTEST_SKIP() << "not built in the repository";
@@ -118,6 +130,10 @@ TEST(DocumentedFlags, AreThoseOfThePrograms) {
   // Of cmake and ctest.
   Flags any = {"build", "install", "prefix", "preset", "target", "parallel"};
   for (const auto& [program, flags] : known) {
+    any.insert(flags.begin(), flags.end());
+  }
+  for (const char* script : {"run.sh", "growth.sh"}) {
+    const Flags flags = FlagsOfScript(std::string("tools/benchmark/") + script);
     any.insert(flags.begin(), flags.end());
   }
   int in_commands = 0;

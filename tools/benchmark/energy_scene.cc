@@ -13,9 +13,9 @@
 namespace splitfusion {
 namespace {
 
-constexpr double kSize = 0.8;    // Of the sheet, metres.
-constexpr double kRadius = 0.3;  // Of its bend, metres.
-constexpr int kNodesAcross = 20;
+constexpr double kSpacing = 0.04;  // Of the nodes, metres.
+constexpr double kBend = 8 / 3.0;  // Angle of the whole bend, radians.
+constexpr double kStep = 0.01;     // Between vertices, metres.
 
 /// The built-in distance again, as a user would write it: a plain functor and a
 /// small class (examples/02_custom_energy_term.cc).
@@ -51,13 +51,43 @@ class UserTerm : public EnergyTerm {
   }
 };
 
-/// Angle of the bend at `u` (metres along the sheet).
-double Angle(double u) { return (u - kSize / 2) / kRadius; }
+/// Cells of a sheet, as nearly as many across as down.
+struct Cells {
+  explicit Cells(int count) {
+    rows = static_cast<int>(std::sqrt(count));
+    while (count % rows != 0) --rows;
+    across = count / rows;
+  }
 
-Eigen::Vector3d PointAt(double u, double v) {
-  return {kRadius * std::sin(Angle(u)), v - kSize / 2,
-          2 + kRadius * (1 - std::cos(Angle(u)))};
-}
+  int across;
+  int rows;
+};
+
+/// The sheet; u and v are metres along it.
+struct Sheet {
+  explicit Sheet(int nodes)
+      : cells(nodes),
+        width(kSpacing * cells.across),
+        height(kSpacing * cells.rows),
+        radius(width / kBend) {}
+
+  /// Angle of the bend at `u`.
+  double Angle(double u) const { return (u - width / 2) / radius; }
+
+  Eigen::Vector3d PointAt(double u, double v) const {
+    return {radius * std::sin(Angle(u)), v - height / 2,
+            2 + radius * (1 - std::cos(Angle(u)))};
+  }
+
+  Eigen::Vector3d NormalAt(double u) const {
+    return {std::sin(Angle(u)), 0, -std::cos(Angle(u))};
+  }
+
+  Cells cells;  // One a node.
+  double width;
+  double height;
+  double radius;  // Of the bend.
+};
 
 /// Where a point of the sheet has moved, metres.
 Eigen::Vector3d Moved(const Eigen::Vector3d& p) {
@@ -66,35 +96,39 @@ Eigen::Vector3d Moved(const Eigen::Vector3d& p) {
                                     1 + std::sin(5 * p.x() - p.y()));
 }
 
-constexpr double kStep = 0.01;  // Between vertices, metres.
-constexpr int kColumns = 81;
+/// Vertices along a length.
+int Columns(double length) {
+  return static_cast<int>(std::lround(length / kStep)) + 1;
+}
 
-TriangleMesh SheetMesh() {
+TriangleMesh SheetMesh(const Sheet& sheet) {
+  const int columns = Columns(sheet.width);
   TriangleMesh mesh;
-  for (int i = 0; i < kColumns * kColumns; ++i) {
-    const int row = i / kColumns, column = i % kColumns;
-    mesh.vertices.push_back(PointAt(kStep * column, kStep * row).cast<float>());
+  for (int i = 0; i < columns * Columns(sheet.height); ++i) {
+    const int row = i / columns, column = i % columns;
+    mesh.vertices.push_back(
+        sheet.PointAt(kStep * column, kStep * row).cast<float>());
     if (row == 0 || column == 0) continue;
-    mesh.triangles.emplace_back(i, i - kColumns, i - 1);
-    mesh.triangles.emplace_back(i - 1, i - kColumns, i - kColumns - 1);
+    mesh.triangles.emplace_back(i, i - columns, i - 1);
+    mesh.triangles.emplace_back(i - 1, i - columns, i - columns - 1);
   }
   return mesh;
 }
 
 /// Nodes on a grid, each moved by up to a third of its cell.
-DeformationGraph SheetGraph() {
-  const TriangleMesh mesh = SheetMesh();
+DeformationGraph SheetGraph(const Sheet& sheet) {
+  const TriangleMesh mesh = SheetMesh(sheet);
   DeformationGraph graph;
-  graph.node_spacing = kSize / kNodesAcross;
+  graph.node_spacing = kSpacing;
   std::vector<NodeSeed> seeds;
-  for (int i = 0; i < EnergyScene::kNodes; ++i) {
-    const double u = graph.node_spacing *
-                     (i % kNodesAcross + 0.2 + 0.6 * HashUnit(i, 0, 0, 1));
-    const double v = graph.node_spacing *
-                     (i / kNodesAcross + 0.2 + 0.6 * HashUnit(i, 0, 0, 2));
-    const Eigen::Vector3d g = PointAt(u, v);
-    const int vertex = static_cast<int>(kColumns * std::lround(v / kStep) +
-                                        std::lround(u / kStep));
+  for (int i = 0; i < sheet.cells.across * sheet.cells.rows; ++i) {
+    const double u =
+        kSpacing * (i % sheet.cells.across + 0.2 + 0.6 * HashUnit(i, 0, 0, 1));
+    const double v =
+        kSpacing * (i / sheet.cells.across + 0.2 + 0.6 * HashUnit(i, 0, 0, 2));
+    const Eigen::Vector3d g = sheet.PointAt(u, v);
+    const int vertex = static_cast<int>(
+        Columns(sheet.width) * std::lround(v / kStep) + std::lround(u / kStep));
     seeds.push_back({vertex, (g.cast<float>() - mesh.vertices[vertex]).norm()});
     graph.positions.push_back(g);
   }
@@ -106,17 +140,18 @@ DeformationGraph SheetGraph() {
 
 /// The i-th pair; row by row over the sheet, as an image is read, each at a
 /// random place of its cell.
-Correspondence MakeCorrespondence(const SkinningIndex& index, int i) {
-  constexpr int kAcross = 200, kRows = EnergyScene::kPoints / kAcross;
-  const double u = kSize / kAcross * (i % kAcross + HashUnit(i, 1, 0, 1));
-  const double v = kSize / kRows * (i / kAcross + HashUnit(i, 1, 0, 2));
-  const Eigen::Vector3d point = PointAt(u, v);
+Correspondence MakeCorrespondence(const Sheet& sheet, const Cells& cells,
+                                  const SkinningIndex& index, int i) {
+  const double u =
+      sheet.width / cells.across * (i % cells.across + HashUnit(i, 1, 0, 1));
+  const double v =
+      sheet.height / cells.rows * (i / cells.across + HashUnit(i, 1, 0, 2));
+  const Eigen::Vector3d point = sheet.PointAt(u, v);
   const Eigen::Vector3f noise(HashUnit(i, 2, 0, 1), HashUnit(i, 2, 0, 2),
                               HashUnit(i, 2, 0, 3));
   Correspondence c;
   c.model.point = point.cast<float>();
-  c.model.normal =
-      Eigen::Vector3d(std::sin(Angle(u)), 0, -std::cos(Angle(u))).cast<float>();
+  c.model.normal = sheet.NormalAt(u).cast<float>();
   c.model.skinning = index.Skin(c.model.point);
   c.warped_normal = c.target_normal = c.model.normal;
   c.target = Moved(point).cast<float>() + 0.004f * noise;
@@ -140,10 +175,13 @@ std::vector<Vector6> Negative(std::vector<Vector6> values) {
 
 }  // namespace
 
-EnergyScene::EnergyScene() : graph(SheetGraph()) {
+EnergyScene::EnergyScene(int nodes, int points)
+    : graph(SheetGraph(Sheet(nodes))) {
+  const Sheet sheet(nodes);
+  const Cells cells(points);
   const SkinningIndex index(graph, kPointNodes);
-  for (int i = 0; i < kPoints; ++i) {
-    correspondences.push_back(MakeCorrespondence(index, i));
+  for (int i = 0; i < points; ++i) {
+    correspondences.push_back(MakeCorrespondence(sheet, cells, index, i));
   }
 }
 

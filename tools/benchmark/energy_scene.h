@@ -12,12 +12,13 @@ namespace splitfusion {
 
 /// A surface of 400 nodes with 30,000 correspondences: a sheet of 0.8 x 0.8 m,
 /// bent like a chest, whose live points have moved smoothly by up to 2 cm, with
-/// noise of the depth.
+/// noise of the depth. With more or fewer nodes, 4 cm apart as before, it is
+/// larger or smaller and bent by the same angle.
 struct EnergyScene {
-  EnergyScene();
+  explicit EnergyScene(int nodes = kNodes, int points = kPoints);
 
-  static constexpr int kNodes = 400;     ///< Of the graph.
-  static constexpr int kPoints = 30000;  ///< Correspondences.
+  static constexpr int kNodes = 400;     ///< Of the graph, if not asked.
+  static constexpr int kPoints = 30000;  ///< Correspondences, if not asked.
   static constexpr int kPointNodes = 6;  ///< That carry a point.
   static constexpr int kIterations = 2;  ///< The last one is the measured one.
 

@@ -1,0 +1,113 @@
+#include "split_models.h"
+
+#include <utility>
+
+#include "people_scene.h"
+#include "splitfusion/lib/association/projective_association.h"
+#include "splitfusion/pipelines/surface_tracker.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr int kPeople = 2;
+constexpr int kStride = 4;  // Of the points, as in the non-rigid stages.
+
+LiveView ViewOf(const PeopleScene& scene, int frame) {
+  const SyntheticFrame rendered = scene.Render(frame);
+  LiveView live =
+      MakeLiveView(scene.camera(), rendered.frame.depth, rendered.frame.color);
+  rendered.labels.convertTo(live.labels, CV_16U);
+  return live;
+}
+
+Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
+
+/// A pixel as a sample of a model that one node carries.
+ModelSample SampleAt(const LiveView& live, int u, int v) {
+  ModelSample sample;
+  sample.point = ToEigen(live.map.points(v, u));
+  sample.normal = ToEigen(live.map.normals(v, u));
+  sample.intensity = {live.grey[0].value(v, u), live.grey[1].value(v, u)};
+  sample.u = u;
+  sample.v = v;
+  sample.skinning.weights[0] = 1;
+  sample.skinning.count = 1;
+  return sample;
+}
+
+/// Every n-th pixel of one label that has a normal.
+std::vector<ModelSample> SamplesOf(const LiveView& live, int label) {
+  std::vector<ModelSample> samples;
+  for (int v = 0; v < live.depth.rows; v += kStride) {
+    for (int u = 0; u < live.depth.cols; u += kStride) {
+      if (live.labels(v, u) != label || !(live.depth(v, u) > 0)) continue;
+      const ModelSample sample = SampleAt(live, u, v);
+      if (sample.normal.norm() > 0.5f) samples.push_back(sample);
+    }
+  }
+  return samples;
+}
+
+/// The surface of the pixels labelled `id`.
+PairedSurface MakePaired(const LiveView& live, int id, SurfaceKind kind,
+                         const SurfaceOptions& options,
+                         std::vector<Correspondence> pairs) {
+  auto surface = std::make_unique<Surface>(id, "", kind, 0, options);
+  surface->Initialize(live);
+  for (Correspondence& pair : pairs) {
+    pair.model.skinning = surface->skinning_index().Skin(pair.model.point);
+  }
+  return {std::move(surface), std::move(pairs)};
+}
+
+/// A view in which all is one surface.
+LiveView WithoutLabels(LiveView live) {
+  live.labels = cv::Mat_<std::uint16_t>::zeros(live.labels.size());
+  return live;
+}
+
+}  // namespace
+
+FramePair::FramePair(int height) {
+  const PeopleScene scene(kPeople, height);
+  before = ViewOf(scene, 0);
+  after = ViewOf(scene, 1);
+  const WarpField still(MakeRigidGraph(Rigid3d::Identity()));
+  const AssociationGates gates = TrackerOptions::Defaults().non_rigid[0].gates;
+  for (int label = 0; label <= kPeople; ++label) {
+    const Association association = Associate(SamplesOf(before, label), still,
+                                              after, label, kStride, gates);
+    pairs.push_back(association.correspondences);
+  }
+}
+
+SceneModel MakeSplitModel(const FramePair& frames,
+                          const SurfaceOptions& background,
+                          const SurfaceOptions& object) {
+  SceneModel model;
+  model.surfaces.push_back(MakePaired(frames.before, 0, SurfaceKind::kRigid,
+                                      background, frames.pairs[0]));
+  for (int label = 1; label <= kPeople; ++label) {
+    model.surfaces.push_back(MakePaired(frames.before, label,
+                                        SurfaceKind::kNonRigid, object,
+                                        frames.pairs[label]));
+  }
+  model.after = frames.after;
+  return model;
+}
+
+SceneModel MakeOneGraphModel(const FramePair& frames,
+                             const SurfaceOptions& options) {
+  std::vector<Correspondence> all;
+  for (const auto& pairs : frames.pairs) {
+    all.insert(all.end(), pairs.begin(), pairs.end());
+  }
+  SceneModel model;
+  model.surfaces.push_back(MakePaired(WithoutLabels(frames.before), 0,
+                                      SurfaceKind::kNonRigid, options,
+                                      std::move(all)));
+  model.after = WithoutLabels(frames.after);
+  return model;
+}
+
+}  // namespace splitfusion

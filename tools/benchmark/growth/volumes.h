@@ -1,0 +1,16 @@
+#ifndef SPLITFUSION_TOOLS_BENCHMARK_GROWTH_VOLUMES_H_
+#define SPLITFUSION_TOOLS_BENCHMARK_GROWTH_VOLUMES_H_
+
+#include "splitfusion/pipelines/surface.h"
+
+namespace splitfusion {
+
+/// Options at another voxel size; the truncation has as many voxels as before.
+SurfaceOptions WithVoxels(SurfaceOptions options, double voxel_size);
+
+/// Memory of all grids of a volume, as OpenVDB counts it.
+double VolumeBytes(const TsdfVolume& volume);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_TOOLS_BENCHMARK_GROWTH_VOLUMES_H_
