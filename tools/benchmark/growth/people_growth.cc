@@ -145,6 +145,7 @@ void AddPeopleRows(const PeopleRuns& runs, GrowthTable* table) {
 GrowthTable PeopleCurve(const GrowthSizes& sizes) {
   std::vector<PeopleRuns> scenes;
   for (const int people : sizes.people) scenes.push_back(Film(people, sizes));
+  // In this order: TBB that was held to one thread does not soon use all again.
   for (const bool alone : {false, true}) {
     const Threads threads(alone ? 1 : 0);
     for (int run = 0; run < sizes.runs; ++run) {
