@@ -66,7 +66,7 @@ DEFINE_int32(neighbors_per_node, 8, "Edges of a node.");
 DEFINE_double(near_spacing, 0.025, "Node spacing up to 0.7 m, metres.");
 DEFINE_double(far_spacing, 0.040, "Node spacing from 1.5 m on, metres.");
 DEFINE_int32(max_nodes, 2000, "Of a graph; its spacing grows to keep it.");
-DEFINE_double(growth_batch, 0,
+DEFINE_double(growth_batch, 0.005,
               "New nodes wait until they are so many, as a part of the graph's "
               "(fewer, larger growths are faster).");
 DEFINE_double(background_voxel, 0.010, "Voxel size of the background, metres.");

@@ -23,7 +23,7 @@ struct GraphOptions {
   /// New nodes wait until they are so many, as a part of the graph's: every
   /// growth renews edges and skinning. Meanwhile nodes a little farther away
   /// carry the points.
-  double growth_batch = 0;
+  double growth_batch = 0.005;
 
   /// @throw InputError if a value is out of its range.
   void Check() const;

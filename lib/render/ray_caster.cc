@@ -202,19 +202,26 @@ Cast MakeCast(const TsdfVolume& volume, const Rigid3f& camera_from_canonical,
   return cast;
 }
 
-/// Colour of the voxel nearest to a point of index space, BGR.
-cv::Vec3b ColorAt(const Cast& cast, const Eigen::Vector3f& p) {
+/// Colour of the voxel nearest to a point of index space; null if there is
+/// none.
+const openvdb::Vec3s* ColorPlace(const Cast& cast, const Eigen::Vector3f& p) {
   const int x = FloorToInt(p.x() + 0.5f);
   const int y = FloorToInt(p.y() + 0.5f);
   const int z = FloorToInt(p.z() + 0.5f);
-  const int leaf = cast.volume.table.Find(x >> 3, y >> 3, z >> 3);
-  if (cast.color[leaf] == nullptr) return {0, 0, 0};
-  const openvdb::Vec3s& rgb =
-      cast.color[leaf][(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
+  const openvdb::Vec3s* leaf =
+      cast.color[cast.volume.table.Find(x >> 3, y >> 3, z >> 3)];
+  return leaf == nullptr ? nullptr
+                         : leaf + ((x & 7) << 6 | (y & 7) << 3 | (z & 7));
+}
+
+/// The same as BGR, black if there is none.
+cv::Vec3b ColorAt(const Cast& cast, const Eigen::Vector3f& p) {
+  const openvdb::Vec3s* rgb = ColorPlace(cast, p);
+  if (rgb == nullptr) return {0, 0, 0};
   const auto byte = [](float v) {
     return cv::saturate_cast<std::uint8_t>(v * 255);
   };
-  return {byte(rgb[2]), byte(rgb[1]), byte(rgb[0])};
+  return {byte((*rgb)[2]), byte((*rgb)[1]), byte((*rgb)[0])};
 }
 
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
@@ -281,6 +288,10 @@ class RowCaster {
   bool Hit(int r) {
     const Eigen::Vector3f step(rays_.step_x[r], rays_.step_y[r],
                                rays_.step_z[r]);
+    if (const openvdb::Vec3s* color =
+            ColorPlace(cast_, refiner_.Place(step, rays_.crossing[r]))) {
+      __builtin_prefetch(color);  // Or its neighbour; far from the distances.
+    }
     Eigen::Vector3f gradient;
     const float depth = refiner_.Refine(step, rays_.crossing[r],
                                         rays_.voxel_step[r], &gradient);

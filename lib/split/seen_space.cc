@@ -44,9 +44,13 @@ bool SeenSpace::LookedThrough(const View& view,
                               const Eigen::Vector3f& point) const {
   if (point.z() <= 0) return false;
   const Eigen::Vector2f pixel = camera_.Project(point);
-  const int u = static_cast<int>(std::lround(pixel.x()));
-  const int v = static_cast<int>(std::lround(pixel.y()));
-  if (u < 0 || v < 0 || u >= camera_.width || v >= camera_.height) return false;
+  // The middle of pixel 0 is at 0.
+  const float x = pixel.x() + 0.5f, y = pixel.y() + 0.5f;
+  if (!(x >= 0 && y >= 0 && x < static_cast<float>(camera_.width) &&
+        y < static_cast<float>(camera_.height))) {
+    return false;
+  }
+  const int u = static_cast<int>(x), v = static_cast<int>(y);
   const float seen = view.depth(v, u);
   const float noise = 3 * (DepthSigma(seen) + DepthSigma(point.z()));
   return seen > point.z() + kClearance + noise;
