@@ -35,7 +35,8 @@ class LiveTiles {
 
   /// False if no live point is within `reach` (metres) of `p`.
   bool MayBeNear(const Eigen::Vector3f& p, float reach) const {
-    if (!(p.z() > 2 * reach)) return false;  // No sensor sees so near.
+    // So near that it may be anywhere in the image.
+    if (!(p.z() > 2 * reach)) return p.z() > -reach;
     const Eigen::Vector2f pixel = camera_.Project(p);
     // How far apart the two may be in the image: |x / z| and |y / z| are < 3.
     const float radius = 4 *

@@ -28,6 +28,8 @@ enum class Coverage : std::uint8_t {
 /// upon others. To fuse a live point wherever the warp happens to reach it
 /// would copy the one onto the other, and the copy would be tracked from then
 /// on (the voxel collisions of Dou et al., Fusion4D, 2016).
+///
+/// Blocks of 2x2 pixels share the place of their first certain point.
 struct CanonicalPlaces {
   cv::Mat_<cv::Vec3f> points;       ///< Metres; NaN where there is none.
   cv::Mat_<std::uint8_t> coverage;  ///< Coverage of every pixel.

@@ -113,18 +113,23 @@ void BlendNewMotions(const std::vector<Eigen::Vector3f>& added,
 
 /// Vertices for new nodes, as many as there is room for; the spacing is raised
 /// where it would be exceeded.
-std::vector<int> NewNodes(const TriangleMesh& mesh, const GraphOptions& options,
-                          const std::vector<SkinningSupport>& supports,
-                          DeformationGraph* graph) {
-  std::vector<int> added =
-      UncoveredVertices(mesh, supports, graph->node_spacing);
-  const int room = options.max_nodes - graph->size();
-  while (static_cast<int>(added.size()) > room) {
-    graph->node_spacing *= 1.1;
-    added = UncoveredVertices(mesh, supports, graph->node_spacing);
-    if (graph->size() > 0 && room <= 0) added.clear();
+struct NewNodes {
+  std::vector<int> vertices;
+  double spacing = 0;  // Metres.
+};
+
+NewNodes FindNewNodes(const TriangleMesh& mesh, const GraphOptions& options,
+                      const std::vector<SkinningSupport>& supports,
+                      const DeformationGraph& graph) {
+  const int room = options.max_nodes - graph.size();
+  NewNodes found{{}, graph.node_spacing};
+  if (graph.size() > 0 && room <= 0) return found;
+  found.vertices = UncoveredVertices(mesh, supports, found.spacing);
+  while (static_cast<int>(found.vertices.size()) > room) {
+    found.spacing *= 1.1;
+    found.vertices = UncoveredVertices(mesh, supports, found.spacing);
   }
-  return added;
+  return found;
 }
 
 /// For every node the vertex nearest to it of those that have no nearer node;
@@ -146,9 +151,11 @@ std::vector<NodeSeed> FindSeeds(const std::vector<SkinningSupport>& supports,
 /// Appends nodes at vertices of the mesh and ties all nodes anew.
 void AddNodes(const TriangleMesh& mesh, const GraphOptions& options,
               const std::vector<SkinningSupport>& supports,
-              const std::vector<int>& added, DeformationGraph* graph) {
-  const std::vector<NodeSeed> seeds = FindSeeds(supports, graph->size(), added);
-  for (const int vertex : added) {
+              const NewNodes& added, DeformationGraph* graph) {
+  const std::vector<NodeSeed> seeds =
+      FindSeeds(supports, graph->size(), added.vertices);
+  graph->node_spacing = added.spacing;
+  for (const int vertex : added.vertices) {
     graph->positions.push_back(mesh.vertices[vertex].cast<double>());
   }
   graph->neighbors = ConnectAlongSurface(graph->positions, seeds, mesh,
@@ -192,8 +199,8 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
     return GrowGraph(canonical_mesh, options, index, skinning.supports(), graph,
                      history);
   }
-  const std::vector<int> added = NewNodes(canonical_mesh, options, {}, graph);
-  graph->motions.resize(added.size());
+  const NewNodes added = FindNewNodes(canonical_mesh, options, {}, *graph);
+  graph->motions.resize(added.vertices.size());
   AddNodes(canonical_mesh, options, {}, added, graph);
   return graph->size();
 }
@@ -202,12 +209,16 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               const SkinningIndex& index,
               const std::vector<SkinningSupport>& supports,
               DeformationGraph* graph, MotionHistory* history) {
-  const std::vector<int> added =
-      NewNodes(canonical_mesh, options, supports, graph);
-  const auto count = static_cast<double>(added.size());
-  if (added.empty() || count < options.growth_batch * graph->size()) return 0;
+  const NewNodes added =
+      FindNewNodes(canonical_mesh, options, supports, *graph);
+  const auto count = static_cast<double>(added.vertices.size());
+  // The last nodes that there is room for do not wait.
+  const double batch =
+      std::min(options.growth_batch * graph->size(),
+               static_cast<double>(options.max_nodes - graph->size()));
+  if (count == 0 || count < batch) return 0;
   std::vector<Eigen::Vector3f> places;
-  for (const int vertex : added) {
+  for (const int vertex : added.vertices) {
     places.push_back(canonical_mesh.vertices[vertex]);
   }
   Carriers carriers = FindCarriers(*graph, index, places);
@@ -218,7 +229,7 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
     }
   }
   AddNodes(canonical_mesh, options, supports, added, graph);
-  return static_cast<int>(added.size());
+  return static_cast<int>(added.vertices.size());
 }
 
 }  // namespace splitfusion

@@ -23,9 +23,9 @@ class NormalEstimator {
         cy_(static_cast<float>(camera.cy)) {
     // Windows may reach over the border, where there is no depth.
     const int radius = options.normal_radius;
-    cv::copyMakeBorder(depth, depth_, radius, radius, radius,
-                       radius + kWindowPixels, cv::BORDER_CONSTANT,
-                       cv::Scalar(0));
+    cv::copyMakeBorder(
+        depth, depth_, radius, radius, radius, radius + kWindowPixels,
+        cv::BORDER_CONSTANT | cv::BORDER_ISOLATED, cv::Scalar(0));
     inverse_depth_ = 1.0 / depth_;
   }
 

@@ -42,7 +42,7 @@ class CanonicalPlacesTest : public ::testing::Test {
   }
 
   const Rigid3d motion_ = MakeMotion({0, 0, 0.4}, {0.1, 0, 0.2});
-  const CoverageLimits limits_ = {0.015, 0.2};
+  CoverageLimits limits_ = {0.015, 0.2};
   TriangleMesh plate_;
   DeformationGraph graph_;
   LiveView live_;
@@ -131,6 +131,16 @@ TEST_F(CanonicalPlacesTest, WhatNoLivePointIsNearMakesNoDifference) {
       EXPECT_EQ(found.points(v, u), expected.points(v, u));
     }
   }
+}
+
+TEST_F(CanonicalPlacesTest, AMeshIsFoundFromFarWhenVoxelsAreCoarse) {
+  const auto modelled = [&](double limit) {
+    limits_.mesh = limit;
+    return cv::countNonZero(Find().coverage ==
+                            static_cast<int>(Coverage::kModelled));
+  };
+  const int within_short = modelled(0.2);
+  EXPECT_GE(modelled(0.9), within_short);  // The wall is at 1.2 m.
 }
 
 TEST_F(CanonicalPlacesTest, WithoutAMeshNodesCarryEverything) {

@@ -129,6 +129,26 @@ TEST(GraphGrowth, AFullGraphGrowsNoMore) {
   }
   EXPECT_EQ(graph.size(), before);
   EXPECT_EQ(graph.neighbors.size(), graph.positions.size());
+  EXPECT_EQ(graph.node_spacing, 0.04);
+}
+
+TEST(GraphGrowth, ABatchThatWaitsLeavesTheSpacing) {
+  GraphOptions options;
+  DeformationGraph graph = CoverWithNodes(PartOfPlate(0.2), 0.04);
+  options.max_nodes = graph.size() + 40;
+  options.growth_batch = 1;
+  EXPECT_EQ(GrowGraph(PartOfPlate(0.22), options, &graph, nullptr), 0);
+  EXPECT_EQ(graph.node_spacing, 0.04);
+}
+
+TEST(GraphGrowth, TheLastNodesThatThereIsRoomForDoNotWait) {
+  GraphOptions options;
+  DeformationGraph graph = CoverWithNodes(PartOfPlate(0.2), 0.04);
+  options.max_nodes = graph.size() + 1;
+  options.growth_batch = 1;
+  EXPECT_EQ(GrowGraph(PartOfPlate(0.4), options, &graph, nullptr), 1);
+  EXPECT_EQ(graph.size(), options.max_nodes);
+  EXPECT_GT(graph.node_spacing, 0.04);
 }
 
 TEST(GraphGrowth, SpecksWithoutATriangleGetNoNode) {
