@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "splitfusion/lib/base/vector_clones.h"
-#include "splitfusion/lib/energy/wide_vectors.h"
+#include "splitfusion/lib/energy/internal/wide_vectors.h"
 
 namespace splitfusion {
 namespace {

@@ -3,10 +3,9 @@
 
 namespace splitfusion {
 
-/// Constants of DepthSigma(), metres and 1 / metres.
-constexpr double kLeastDepthSigma = 0.0012;
-constexpr double kDepthSigmaGrowth = 0.0019;
-constexpr double kBestDepth = 0.4;
+constexpr double kLeastDepthSigma = 0.0012;   ///< Of DepthSigma(), metres.
+constexpr double kDepthSigmaGrowth = 0.0019;  ///< The same, 1 / metres.
+constexpr double kBestDepth = 0.4;            ///< The same, metres.
 
 /// Axial noise of a structured-light camera at z-depth `depth` (both metres):
 /// sigma = 0.0012 + 0.0019 (z - 0.4)^2 (Nguyen et al. 2012). It sets weights

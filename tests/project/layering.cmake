@@ -37,7 +37,9 @@ endfunction()
 
 function(check_own_include file module included)
   module_of("${included}" other)
-  if(included MATCHES "/internal/" AND NOT file MATCHES "\\.cc$|/internal/")
+  # Headers of tools/ are not installed.
+  if(included MATCHES "/internal/" AND NOT module STREQUAL "tools" AND
+     NOT file MATCHES "\\.cc$|/internal/")
     breach("${file}" "public header includes ${included}, not installed")
   elseif(NOT DEFINED level_of_${other})
     breach("${file}" "includes ${included}, a module that is not listed")

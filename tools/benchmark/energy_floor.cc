@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "splitfusion/lib/energy/block_kernels.h"
-#include "splitfusion/lib/energy/wide_vectors.h"
+#include "splitfusion/lib/energy/internal/wide_vectors.h"
 
 // A floor may round as it likes: multiplications and additions are fused.
 #pragma GCC optimize("fp-contract=fast")

@@ -1,5 +1,5 @@
-#ifndef SPLITFUSION_LIB_ENERGY_WIDE_VECTORS_H_
-#define SPLITFUSION_LIB_ENERGY_WIDE_VECTORS_H_
+#ifndef SPLITFUSION_LIB_ENERGY_INTERNAL_WIDE_VECTORS_H_
+#define SPLITFUSION_LIB_ENERGY_INTERNAL_WIDE_VECTORS_H_
 
 // For the kernels of this folder only: vectors of four and two numbers and what
 // is done with them. Macros, since functions that take wide vectors differ by
@@ -32,4 +32,4 @@ typedef double Vector2 __attribute__((vector_size(16), aligned(8), may_alias));
   __builtin_shufflevector(low, high, 0, 1, 2, 3)
 #define SPLITFUSION_SUM4(v) (((v)[0] + (v)[2]) + ((v)[1] + (v)[3]))
 
-#endif  // SPLITFUSION_LIB_ENERGY_WIDE_VECTORS_H_
+#endif  // SPLITFUSION_LIB_ENERGY_INTERNAL_WIDE_VECTORS_H_
