@@ -12,6 +12,7 @@
 #include "splitfusion/lib/render/internal/depth_bounds.h"
 #include "splitfusion/lib/render/internal/ray_bundle.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
+#include "splitfusion/lib/tsdf/internal/packed_color.h"
 
 namespace splitfusion {
 namespace {
@@ -166,7 +167,7 @@ class Refiner {
 struct Cast {
   internal::RayVolume volume;
   std::vector<LeafPlace> places;              // Of the blocks with surface.
-  std::vector<const openvdb::Vec3s*> color;   // By block number.
+  std::vector<const std::int32_t*> color;   // By block number.
   std::vector<float> no_distance, no_weight;  // Of the block that is not there.
 };
 
@@ -204,11 +205,11 @@ Cast MakeCast(const TsdfVolume& volume, const Rigid3f& camera_from_canonical,
 
 /// Colour of the voxel nearest to a point of index space; null if there is
 /// none.
-const openvdb::Vec3s* ColorPlace(const Cast& cast, const Eigen::Vector3f& p) {
+const std::int32_t* ColorPlace(const Cast& cast, const Eigen::Vector3f& p) {
   const int x = FloorToInt(p.x() + 0.5f);
   const int y = FloorToInt(p.y() + 0.5f);
   const int z = FloorToInt(p.z() + 0.5f);
-  const openvdb::Vec3s* leaf =
+  const std::int32_t* leaf =
       cast.color[cast.volume.table.Find(x >> 3, y >> 3, z >> 3)];
   return leaf == nullptr ? nullptr
                          : leaf + ((x & 7) << 6 | (y & 7) << 3 | (z & 7));
@@ -216,12 +217,10 @@ const openvdb::Vec3s* ColorPlace(const Cast& cast, const Eigen::Vector3f& p) {
 
 /// The same as BGR, black if there is none.
 cv::Vec3b ColorAt(const Cast& cast, const Eigen::Vector3f& p) {
-  const openvdb::Vec3s* rgb = ColorPlace(cast, p);
-  if (rgb == nullptr) return {0, 0, 0};
-  const auto byte = [](float v) {
-    return cv::saturate_cast<std::uint8_t>(v * 255);
-  };
-  return {byte((*rgb)[2]), byte((*rgb)[1]), byte((*rgb)[0])};
+  const std::int32_t* color = ColorPlace(cast, p);
+  if (color == nullptr) return {0, 0, 0};
+  return {internal::ByteOf(*color, 2), internal::ByteOf(*color, 1),
+          internal::ByteOf(*color, 0)};
 }
 
 cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
@@ -288,7 +287,7 @@ class RowCaster {
   bool Hit(int r) {
     const Eigen::Vector3f step(rays_.step_x[r], rays_.step_y[r],
                                rays_.step_z[r]);
-    if (const openvdb::Vec3s* color =
+    if (const std::int32_t* color =
             ColorPlace(cast_, refiner_.Place(step, rays_.crossing[r]))) {
       __builtin_prefetch(color);  // Or its neighbour; far from the distances.
     }

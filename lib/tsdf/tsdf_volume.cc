@@ -2,12 +2,14 @@
 
 #include <openvdb/io/Stream.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
-#include <mutex>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
+#include "splitfusion/lib/tsdf/internal/packed_color.h"
 
 namespace splitfusion {
 namespace {
@@ -47,6 +49,41 @@ typename Grid::Ptr FindGrid(const openvdb::GridPtrVec& grids,
   auto grid = openvdb::gridPtrCast<Grid>(found);
   if (!grid) throw InputError(path + ": grid '" + name + "' has a wrong type");
   return grid;
+}
+
+/// Red, green and blue, 0..1.
+openvdb::Vec3s Unpack(std::int32_t color) {
+  openvdb::Vec3s rgb;
+  for (int k = 0; k < 3; ++k) {
+    rgb[k] = static_cast<float>(internal::ChannelOf(color, k)) /
+             internal::kChannelEnd;
+  }
+  return rgb;
+}
+
+/// The nearest packed colour.
+std::int32_t Pack(const openvdb::Vec3s& rgb) {
+  const auto channel = [](float c) {
+    // Not a number: dark.
+    const float inside = c > 0 ? std::min(c, 1.0f) : 0.0f;
+    return static_cast<int>(std::lround(inside * internal::kChannelEnd));
+  };
+  return internal::PackColor(channel(rgb[0]), channel(rgb[1]), channel(rgb[2]));
+}
+
+/// A grid of the same blocks, whose voxels are convert(voxel).
+template <typename Target, typename Source, typename Function>
+typename Target::Ptr Convert(const Source& source, const Function& convert) {
+  auto target = MakeGrid<Target>(source.getName(), source.voxelSize()[0],
+                                 convert(source.background()));
+  for (auto leaf = source.tree().cbeginLeaf(); leaf; ++leaf) {
+    auto* to = target->tree().touchLeaf(leaf->origin());
+    to->setValueMask(leaf->getValueMask());
+    const auto* from = leaf->buffer().data();
+    std::transform(from, from + internal::kLeafVoxels, to->buffer().data(),
+                   convert);
+  }
+  return target;
 }
 
 }  // namespace
@@ -101,8 +138,7 @@ TsdfVolume::TsdfVolume(const TsdfOptions& options)
   grids_->weight =
       MakeGrid<openvdb::FloatGrid>("weight", options.voxel_size, 0.0f);
   if (!options.has_color) return;
-  grids_->color = MakeGrid<openvdb::Vec3SGrid>("color", options.voxel_size,
-                                               openvdb::Vec3s(0, 0, 0));
+  grids_->color = MakeGrid<openvdb::Int32Grid>("color", options.voxel_size, 0);
 }
 
 TsdfVolume::~TsdfVolume() = default;
@@ -120,7 +156,7 @@ void TsdfVolume::Write(const std::string& path) const {
           "max_weight", openvdb::DoubleMetadata(options_.max_weight));
       openvdb::GridPtrVec grids = {grids_->distance, grids_->weight};
       if (options_.has_color) {
-        grids.push_back(grids_->color);
+        grids.push_back(Convert<openvdb::Vec3SGrid>(*grids_->color, Unpack));
       } else {
         grids_->distance->insertMeta(kNoColor, openvdb::BoolMetadata(true));
       }
@@ -144,7 +180,8 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
     options.has_color =
         grids.distance->getMetadata<openvdb::BoolMetadata>(kNoColor) == nullptr;
     if (options.has_color) {
-      grids.color = FindGrid<openvdb::Vec3SGrid>(*all, "color", path);
+      grids.color = Convert<openvdb::Int32Grid>(
+          *FindGrid<openvdb::Vec3SGrid>(*all, "color", path), Pack);
     }
     options.voxel_size = grids.distance->voxelSize()[0];
     options.truncation = grids.distance->metaValue<double>("truncation");
@@ -163,9 +200,7 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
 namespace internal {
 
 FusedLeaf ToFused(const LeafBuffers& leaf) {
-  static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
-  return {leaf.distance, leaf.weight,
-          leaf.color == nullptr ? nullptr : leaf.color->asPointer()};
+  return {leaf.distance, leaf.weight, leaf.color};
 }
 
 }  // namespace internal

@@ -41,7 +41,7 @@ void RayCastRow(benchmark::State& state) {
 struct HitCell {
   const float* distance;  // Of its lowest voxel; all eight are in its block.
   const float* weight;
-  const openvdb::Vec3s* color;
+  const std::int32_t* color;
   int u, v;
 };
 
@@ -85,7 +85,7 @@ void ReadHit(const HitCell& hit, ModelMap* map) {
   }
   map->points(hit.v, hit.u) = {sum[0], sum[1], weight};
   map->normals(hit.v, hit.u) = {sum[1] - sum[0], sum[0], sum[1]};
-  map->color(hit.v, hit.u)[0] = static_cast<std::uint8_t>((*hit.color)[0]);
+  map->color(hit.v, hit.u)[0] = static_cast<std::uint8_t>(*hit.color);
 }
 
 void RayCastFloor(benchmark::State& state) {

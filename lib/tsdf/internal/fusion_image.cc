@@ -6,12 +6,20 @@
 #include <cmath>
 #include <limits>
 
+#include "splitfusion/lib/tsdf/internal/packed_color.h"
+
 namespace splitfusion {
 namespace internal {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr FusionPixel kNoPixel = {-kInfinity, 0};
+
+/// The nearest packed colour.
+std::int32_t PackBytes(const cv::Vec3b& bgr) {
+  return PackColor(ChannelFromByte(bgr[2]), ChannelFromByte(bgr[1]),
+                   ChannelFromByte(bgr[0]));
+}
 
 }  // namespace
 
@@ -21,12 +29,17 @@ FusionImage::FusionImage(const DepthObservation& observation,
       columns_((observation.camera.width + kTile - 1) / kTile),
       rows_((observation.camera.height + kTile - 1) / kTile) {
   const PinholeCamera& camera = observation.camera;
-  pixels_.resize(static_cast<std::size_t>(camera.width) * camera.height + 1);
-  pixels_.back() = kNoPixel;
+  const std::size_t count =
+      static_cast<std::size_t>(camera.width) * camera.height;
+  pixels_.reset(new FusionPixel[count + 1]);
+  pixels_[count] = kNoPixel;
   reach_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
-  if (options.has_color) rgb_.resize(pixels_.size());
-  view_ = {pixels_.data(),
-           rgb_.data(),
+  if (options.has_color) {
+    color_.reset(new std::int32_t[count + 1]);
+    color_[count] = 0;
+  }
+  view_ = {pixels_.get(),
+           color_.get(),
            camera.width,
            camera.height,
            static_cast<float>(camera.fx),
@@ -59,12 +72,10 @@ void FusionImage::FillRow(const DepthObservation& observation, int v) {
     reach[u / kTile] = std::max(
         reach[u / kTile], depth[u] + (writes ? truncation_ : -truncation_));
   }
-  if (rgb_.empty()) return;
+  if (color_ == nullptr) return;
   const cv::Vec3b* bgr = observation.color.ptr<cv::Vec3b>(v);
-  std::int32_t* rgb = &rgb_[static_cast<std::size_t>(v) * view_.width];
-  for (int u = 0; u < view_.width; ++u) {
-    rgb[u] = bgr[u][2] | bgr[u][1] << 8 | bgr[u][0] << 16;
-  }
+  std::int32_t* color = &color_[static_cast<std::size_t>(v) * view_.width];
+  for (int u = 0; u < view_.width; ++u) color[u] = PackBytes(bgr[u]);
 }
 
 FusedPart FusionImage::MayChange(const ImageBox& box) const {

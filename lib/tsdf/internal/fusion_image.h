@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_TSDF_INTERNAL_FUSION_IMAGE_H_
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
@@ -35,9 +36,10 @@ class FusionImage {
 
   float truncation_;
   int columns_, rows_;  // Of tiles.
-  std::vector<FusionPixel> pixels_;
+  // Filled in parallel, not before.
+  std::unique_ptr<FusionPixel[]> pixels_;
   std::vector<float> reach_;  // Per tile: farthest z-depth of any change.
-  std::vector<std::int32_t> rgb_;
+  std::unique_ptr<std::int32_t[]> color_;  // Null: without colour.
   FusionView view_;
 };
 

@@ -20,7 +20,7 @@ struct LeafBuffers {
   openvdb::Coord origin;
   float* distance = nullptr;
   float* weight = nullptr;
-  openvdb::Vec3s* color = nullptr;  // Null: without colour.
+  std::int32_t* color = nullptr;  // Packed; null: without colour.
 };
 
 /// What fusion made of a block.
@@ -43,7 +43,7 @@ inline LeafPlace PlaceOf(const openvdb::Coord& voxel) {
 struct TsdfVolume::Grids {
   openvdb::FloatGrid::Ptr distance;
   openvdb::FloatGrid::Ptr weight;
-  openvdb::Vec3SGrid::Ptr color;  // Null: without colour.
+  openvdb::Int32Grid::Ptr color;  // Packed; null: without colour.
 
   /// All blocks in the order in which they came to be, and their numbers + 1 by
   /// their place.

@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <cstring>
 
+// Nothing below is called: what is passed is no matter.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 /// Functions that work on vectors are inlined into their callers, once for
 /// every instruction set.
 #define SPLITFUSION_INLINE inline __attribute__((always_inline))
@@ -11,69 +14,109 @@
 namespace splitfusion {
 namespace internal {
 
-constexpr int kLanes = 8;  ///< Numbers that are worked on side by side.
-
 /// Eight numbers.
-using Lanes = float __attribute__((vector_size(sizeof(float) * kLanes)));
+using Lanes = float __attribute__((vector_size(sizeof(float) * 8)));
 /// Eight integers, or eight conditions: 0 or -1.
-using Flags = std::int32_t __attribute__((vector_size(sizeof(float) * kLanes)));
+using Flags = std::int32_t __attribute__((vector_size(sizeof(float) * 8)));
 
-/// Reads eight numbers from anywhere.
-SPLITFUSION_INLINE void Load(const float* from, Lanes* to) {
-  std::memcpy(to, from, sizeof(Lanes));
-}
+/// Fusion eight voxels at a time, for any processor. Another pack of lanes is
+/// SixteenLanes: loops are written once for both, with these names and the
+/// functions below.
+struct EightLanes {
+  static constexpr int kCount = 8;  ///< Numbers worked on side by side.
+  using Real = Lanes;               ///< As many numbers.
+  using Whole = Flags;              ///< As many integers.
+  using Mask = Flags;               ///< As many conditions.
 
-/// Writes eight numbers to anywhere.
-SPLITFUSION_INLINE void Store(const Lanes& from, float* to) {
-  std::memcpy(to, &from, sizeof(Lanes));
-}
-
-/// The nearest integers, halves away from zero like std::lround.
-SPLITFUSION_INLINE void Round(const Lanes& x, Flags* nearest) {
-  Flags bits;
-  std::memcpy(&bits, &x, sizeof(bits));
-  const Lanes below_half = Lanes{} + 0.49999997f;
-  Flags half_bits;
-  std::memcpy(&half_bits, &below_half, sizeof(half_bits));
-  half_bits |= bits & INT32_MIN;  // With the sign of x.
-  Lanes half;
-  std::memcpy(&half, &half_bits, sizeof(half));
-  *nearest = __builtin_convertvector(x + half, Flags);
-}
-
-/// Whether any flag is set.
-SPLITFUSION_INLINE bool Any(const Flags& flags) {
-  using Half = std::int64_t __attribute__((vector_size(sizeof(Flags) / 2)));
-  Half halves[2];
-  std::memcpy(halves, &flags, sizeof(halves));
-  const Half both = halves[0] | halves[1];
-  return (both[0] | both[1]) != 0;
-}
-
-/// Turns eight rows into eight columns.
-SPLITFUSION_INLINE void Transpose(Lanes rows[kLanes]) {
-  Lanes pairs[kLanes], fours[kLanes];
-  for (int i = 0; i < kLanes; i += 2) {
-    pairs[i] = __builtin_shuffle(rows[i], rows[i + 1],
-                                 Flags{0, 8, 1, 9, 4, 12, 5, 13});
-    pairs[i + 1] = __builtin_shuffle(rows[i], rows[i + 1],
-                                     Flags{2, 10, 3, 11, 6, 14, 7, 15});
+  /// a < b.
+  static SPLITFUSION_INLINE Flags Less(const Lanes& a, const Lanes& b) {
+    return a < b;
   }
-  for (int i = 0; i < kLanes; ++i) {
-    const Lanes& low = pairs[(i & 4) | ((i >> 1) & 1)];
-    const Lanes& high = pairs[(i & 4) | 2 | ((i >> 1) & 1)];
-    fours[i] =
-        (i & 1) == 0
-            ? __builtin_shuffle(low, high, Flags{0, 1, 8, 9, 4, 5, 12, 13})
-            : __builtin_shuffle(low, high, Flags{2, 3, 10, 11, 6, 7, 14, 15});
+
+  /// a < b, of integers that are not negative; a negative a is not less.
+  static SPLITFUSION_INLINE Flags Within(const Flags& a, const Flags& b) {
+    return (a >= 0) & (a < b);
   }
-  for (int i = 0; i < kLanes / 2; ++i) {
-    rows[i] = __builtin_shuffle(fours[i], fours[i + 4],
-                                Flags{0, 1, 2, 3, 8, 9, 10, 11});
-    rows[i + 4] = __builtin_shuffle(fours[i], fours[i + 4],
-                                    Flags{4, 5, 6, 7, 12, 13, 14, 15});
+
+  /// `a` where the condition holds, else `b`.
+  static SPLITFUSION_INLINE Lanes Select(const Flags& mask, const Lanes& a,
+                                         const Lanes& b) {
+    return mask ? a : b;
   }
-}
+
+  /// The same.
+  static SPLITFUSION_INLINE Flags Select(const Flags& mask, const Flags& a,
+                                         const Flags& b) {
+    return mask ? a : b;
+  }
+
+  /// The lower of both.
+  static SPLITFUSION_INLINE Lanes Lower(const Lanes& a, const Lanes& b) {
+    return a < b ? a : b;
+  }
+
+  /// The higher of both.
+  static SPLITFUSION_INLINE Lanes Higher(const Lanes& a, const Lanes& b) {
+    return b < a ? a : b;
+  }
+
+  /// Which integers are not 0.
+  static SPLITFUSION_INLINE Flags NotZero(const Flags& numbers) {
+    return numbers != 0;
+  }
+
+  /// Whether any condition holds.
+  static SPLITFUSION_INLINE bool Any(const Flags& flags) {
+    using Half = std::int64_t __attribute__((vector_size(sizeof(Flags) / 2)));
+    Half halves[2];
+    std::memcpy(halves, &flags, sizeof(halves));
+    const Half both = halves[0] | halves[1];
+    return (both[0] | both[1]) != 0;
+  }
+
+  /// The bits of numbers.
+  static SPLITFUSION_INLINE Flags Bits(const Lanes& numbers) {
+    Flags bits;
+    std::memcpy(&bits, &numbers, sizeof(bits));
+    return bits;
+  }
+
+  /// The numbers of bits.
+  static SPLITFUSION_INLINE Lanes FromBits(const Flags& bits) {
+    Lanes numbers;
+    std::memcpy(&numbers, &bits, sizeof(numbers));
+    return numbers;
+  }
+
+  /// Reads pairs of numbers at `index` of an array of pairs, and turns them
+  /// round.
+  static SPLITFUSION_INLINE void GatherPairs(const float (*pairs)[2],
+                                             const std::int32_t index[8],
+                                             Lanes* firsts, Lanes* seconds) {
+    using Pair = double;
+    using Pairs = Pair __attribute__((vector_size(sizeof(Lanes))));
+    static_assert(sizeof(*pairs) == sizeof(Pair));
+    Pair pair[8];
+    for (int i = 0; i < 8; ++i) {
+      std::memcpy(&pair[i], pairs[index[i]], sizeof(Pair));
+    }
+    const Pairs first = {pair[0], pair[1], pair[4], pair[5]};
+    const Pairs second = {pair[2], pair[3], pair[6], pair[7]};
+    Lanes low, high;
+    std::memcpy(&low, &first, sizeof(low));
+    std::memcpy(&high, &second, sizeof(high));
+    *firsts = __builtin_shuffle(low, high, Flags{0, 2, 8, 10, 4, 6, 12, 14});
+    *seconds = __builtin_shuffle(low, high, Flags{1, 3, 9, 11, 5, 7, 13, 15});
+  }
+
+  /// Reads the integers at `index` of an array.
+  static SPLITFUSION_INLINE Flags Gather(const std::int32_t* numbers,
+                                         const std::int32_t index[8]) {
+    return Flags{numbers[index[0]], numbers[index[1]], numbers[index[2]],
+                 numbers[index[3]], numbers[index[4]], numbers[index[5]],
+                 numbers[index[6]], numbers[index[7]]};
+  }
+};
 
 }  // namespace internal
 }  // namespace splitfusion

@@ -1,5 +1,7 @@
 #include "splitfusion/lib/tsdf/internal/padded_leaf.h"
 
+#include "splitfusion/lib/tsdf/internal/packed_color.h"
+
 namespace splitfusion {
 namespace internal {
 namespace {
@@ -43,7 +45,7 @@ LeafLookup::LeafLookup(const TsdfVolume& volume)
     : grids_(volume.grids()),
       free_space_(kLeafVoxels, grids_.distance->background()),
       unobserved_(kLeafVoxels, 0.0f),
-      black_(kLeafVoxels, openvdb::Vec3s(0, 0, 0)),
+      black_(kLeafVoxels, 0),
       nowhere_{{}, free_space_.data(), unobserved_.data(), black_.data()} {}
 
 bool LeafLookup::MayHaveSurface(const openvdb::Coord& origin) const {
@@ -122,21 +124,22 @@ bool PaddedLeaf::Observed(const openvdb::Vec3d& p) const {
 
 openvdb::Vec3s PaddedLeaf::Color(const openvdb::Vec3d& p) const {
   const Cell cell(p, origin_);
-  openvdb::Vec3s corners[8];
+  std::int32_t corners[8];
   for (int corner = 0; corner < 8; ++corner) {
     const int x = cell.low[0] + (corner >> 2);
     const int y = cell.low[1] + ((corner >> 1) & 1);
     const int z = cell.low[2] + (corner & 1);
-    const openvdb::Vec3s* color = leaves_[Neighbor(x, y, z)]->color;
-    corners[corner] = color == nullptr
-                          ? openvdb::Vec3s(0, 0, 0)
-                          : color[(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
+    const std::int32_t* color = leaves_[Neighbor(x, y, z)]->color;
+    corners[corner] =
+        color == nullptr ? 0 : color[(x & 7) << 6 | (y & 7) << 3 | (z & 7)];
   }
   openvdb::Vec3s color;
   for (int channel = 0; channel < 3; ++channel) {
-    color[channel] = Trilinear(cell, [&](int i, int j, int k) {
-      return corners[i << 2 | j << 1 | k][channel];
+    const float mean = Trilinear(cell, [&](int i, int j, int k) {
+      return static_cast<float>(
+          ChannelOf(corners[i << 2 | j << 1 | k], channel));
     });
+    color[channel] = mean / kChannelEnd;
   }
   return color;
 }

@@ -31,7 +31,7 @@ class LeafLookup {
  private:
   const TsdfVolume::Grids& grids_;
   std::vector<float> free_space_, unobserved_;
-  std::vector<openvdb::Vec3s> black_;
+  std::vector<std::int32_t> black_;
   LeafBuffers nowhere_;
 };
 

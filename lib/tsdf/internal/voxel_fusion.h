@@ -15,20 +15,20 @@ struct FusionPixel {
 /// An observation, for loops that are free of Eigen and OpenCV.
 struct FusionView {
   const FusionPixel* pixels;  ///< Row by row; one more at the end changes none.
-  /// The same of colours, red in the lowest byte; not needed without colour.
-  const std::int32_t* rgb;
+  /// The same of packed colours; not needed without colour.
+  const std::int32_t* color;
   int width, height;
   float fx, fy, cx, cy;
   float truncation;  ///< Metres.
   float max_weight, max_free_weight;
 };
 
-/// Buffers of the block that is fused into; `color`: red, green and blue of
-/// every voxel, 0..1; null: there is none.
+/// Buffers of the block that is fused into; `color`: packed, of every voxel;
+/// null: there is none.
 struct FusedLeaf {
   float* distance;
   float* weight;
-  float* color;
+  std::int32_t* color;
 };
 
 /// No mesh asks whether a voxel has been observed more than this.

@@ -1,0 +1,41 @@
+#pragma GCC optimize("no-trapping-math", "fp-contract=off")
+
+#include "splitfusion/lib/tsdf/internal/wide_fusion.h"
+
+#include <immintrin.h>
+
+#include <cstdint>
+#include <cstring>
+
+// What has been included is for any processor, what follows for these alone:
+// no function of it is called from elsewhere.
+#pragma GCC push_options
+#pragma GCC target("arch=x86-64-v4")
+// Of the compiler's own headers: GCC bug 105593.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+
+#include "splitfusion/lib/tsdf/internal/fuse_block.h"
+#include "splitfusion/lib/tsdf/internal/wide_lanes.h"
+
+namespace splitfusion {
+namespace internal {
+
+bool FuseRigidWide(const FusionView& view, const float base[3],
+                   const float steps[3][3], const FusedPart& part,
+                   const FusedLeaf& leaf) {
+  const FusionView local = view;  // Which no voxel's address can be that of.
+  return FuseRigid<SixteenLanes>(local, base, steps, part, leaf);
+}
+
+#pragma GCC pop_options
+
+bool HasWideLanes() {
+  return __builtin_cpu_supports("avx512f") &&
+         __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512vl");
+}
+
+}  // namespace internal
+}  // namespace splitfusion
