@@ -81,7 +81,9 @@ std::vector<Eigen::Vector3d> PlacesBeyondNodes(const CanonicalPlaces& found) {
 void SurfaceOptions::Check() const {
   tsdf.Check();
   graph.Check();
-  CheckOption(min_mesh_weight > 0, "min_mesh_weight", min_mesh_weight, "> 0");
+  CheckOption(
+      min_mesh_weight > 0 && min_mesh_weight <= MeshExtractor::kMaxMinWeight,
+      "min_mesh_weight", min_mesh_weight, "> 0 and at most 8");
   CheckOption(looks >= 1, "looks", looks, ">= 1");
   CheckOption(min_piece_area >= 0, "min_piece_area", min_piece_area,
               "square metres, >= 0");
