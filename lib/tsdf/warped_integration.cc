@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/lib/tsdf/check_observation.h"
 #include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 
@@ -254,6 +255,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
                                  const SkinningIndex& index,
                                  const WarpField& warp, double reach,
                                  TsdfVolume* volume) {
+  CheckObservation(observation, volume->options());
   TsdfVolume::Grids& grids = volume->grids();
   const std::vector<internal::LeafBuffers>& leaves = grids.leaves;
   const internal::FusionImage image(observation, volume->options());
