@@ -63,9 +63,10 @@ TEST(ForeignVolume, WhatAnotherProgramDidNotObserveIsNoSurface) {
       TsdfVolume::Read(foreign.Write(folder / "empty.vdb"));
   EXPECT_TRUE(ExtractMesh(empty, 0.5).empty());
   EXPECT_TRUE(ExtractMesh(empty, 0).empty());
-  // A voxel of matter in observed space is a small closed surface.
+  // A voxel of matter in observed space is a small closed surface; in the next
+  // block, so that this one is meshed and those before it are not.
   for (int i = 0; i < 27; ++i) {
-    const openvdb::Coord voxel(3 + i / 9, 3 + i / 3 % 3, 3 + i % 3);
+    const openvdb::Coord voxel(3 + i / 9, 3 + i / 3 % 3, 11 + i % 3);
     foreign.Set(voxel, i == 13 ? -0.01f : 0.01f, 1);
   }
   const TriangleMesh mesh =
