@@ -15,6 +15,7 @@
 #include "benchmark_report.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/freed_memory.h"
 
 namespace splitfusion {
 namespace {
@@ -142,6 +143,7 @@ int Run(const Arguments& arguments) {
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
+  splitfusion::KeepFreedMemory();
   try {
     return splitfusion::Run(splitfusion::ParseArguments(argc, argv));
   } catch (const splitfusion::InputError& error) {

@@ -11,6 +11,7 @@
 #include "growth_curves.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/freed_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 
 namespace splitfusion {
@@ -112,6 +113,7 @@ void Run(const Arguments& arguments) {
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
+  splitfusion::KeepFreedMemory();
   try {
     splitfusion::Run(splitfusion::ParseArguments(argc, argv));
     return 0;
