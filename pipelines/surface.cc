@@ -7,31 +7,12 @@
 #include <utility>
 
 #include "splitfusion/lib/association/canonical_places.h"
+#include "splitfusion/lib/association/observe_surface.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/geometry/mesh_pieces.h"
 
 namespace splitfusion {
 namespace {
-
-/// What every live pixel may do to the volume of one surface.
-DepthObservation Observe(const LiveView& live, int id) {
-  DepthObservation observation;
-  observation.camera = live.camera;
-  observation.depth = live.depth;
-  observation.weight = live.confidence;
-  observation.color = live.color;
-  observation.role.create(live.depth.size());
-  for (int v = 0; v < live.depth.rows; ++v) {
-    for (int u = 0; u < live.depth.cols; ++u) {
-      PixelRole role = PixelRole::kNone;
-      if (live.uncertain(v, u) == 0 && live.edges(v, u) == 0) {
-        role = live.labels(v, u) == id ? PixelRole::kWrite : PixelRole::kCarve;
-      }
-      observation.role(v, u) = static_cast<std::uint8_t>(role);
-    }
-  }
-  return observation;
-}
 
 /// Median depth of a surface's live pixels, metres; 0 if it has none.
 double MedianDepth(const LiveView& live, int id) {
@@ -81,7 +62,9 @@ std::vector<Eigen::Vector3d> PlacesBeyondNodes(const CanonicalPlaces& found) {
 void SurfaceOptions::Check() const {
   tsdf.Check();
   graph.Check();
-  CheckOption(min_mesh_weight > 0, "min_mesh_weight", min_mesh_weight, "> 0");
+  CheckOption(
+      min_mesh_weight > 0 && min_mesh_weight <= MeshExtractor::kMaxMinWeight,
+      "min_mesh_weight", min_mesh_weight, "> 0 and at most 8");
   CheckOption(looks >= 1, "looks", looks, ">= 1");
   CheckOption(min_piece_area >= 0, "min_piece_area", min_piece_area,
               "square metres, >= 0");
@@ -98,7 +81,7 @@ Surface::Surface(int id, std::string label, SurfaceKind kind, int first_frame,
       volume_(options.tsdf) {}
 
 bool Surface::Initialize(const LiveView& live) {
-  const DepthObservation observation = Observe(live, id_);
+  const DepthObservation observation = ObserveSurface(live, id_);
   AllocateBand(observation, Rigid3d::Identity(), &volume_);
   // A surface that nothing was seen of could never be tracked.
   if (volume_.leaf_count() == 0) return false;
@@ -133,7 +116,7 @@ void Surface::AllocateAroundNodes(int first) {
 }
 
 void Surface::Fuse(const LiveView& live) {
-  DepthObservation observation = Observe(live, id_);
+  DepthObservation observation = ObserveSurface(live, id_);
   if (kind_ == SurfaceKind::kRigid) {
     const Rigid3d camera_from_canonical = MeanRigidMotion(graph_);
     AllocateBand(observation, camera_from_canonical, &volume_);

@@ -25,7 +25,7 @@ struct SurfaceOptions {
   /// Nodes and edges.
   GraphOptions graph;
   /// Observations a voxel needs before it is meshed (weights, about frames at
-  /// close range).
+  /// close range); at most MeshExtractor::kMaxMinWeight.
   double min_mesh_weight = 0.05;
   /// What the mesh of a non-rigid surface does not cover yet is meshed once
   /// seen in so many frames, and where it had been carved in several times as

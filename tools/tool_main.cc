@@ -2,7 +2,6 @@
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
-#include <malloc.h>
 
 #include <cstdlib>
 #include <exception>
@@ -15,6 +14,7 @@
 
 #include "flag_names.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/freed_memory.h"
 
 DECLARE_bool(help);
 DECLARE_bool(helpshort);
@@ -179,18 +179,6 @@ bool ParseFlags(int argc, char** argv, const std::string& name,
   gflags::HandleCommandLineHelpFlags();
   CheckNoArguments(argc, argv);
   return true;
-}
-
-/// Lets freed memory be used again instead of giving it back to the system:
-/// every frame asks for the same images and lists, megabytes each, and fresh
-/// pages cost more than what is done with them.
-void KeepFreedMemory() {
-  constexpr int kMappedAlone = 32 << 20;  // The most that glibc allows.
-  constexpr int kKept = 1 << 30;
-  constexpr int kGrowth = 64 << 20;
-  mallopt(M_MMAP_THRESHOLD, kMappedAlone);
-  mallopt(M_TRIM_THRESHOLD, kKept);
-  mallopt(M_TOP_PAD, kGrowth);
 }
 
 }  // namespace

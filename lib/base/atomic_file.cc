@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -47,6 +48,15 @@ void WriteFileAtomically(const std::string& path,
                        "writable or disk full)");
     }
   });
+}
+
+bool CanMakeFiles(const std::string& folder) {
+  std::string path = folder + "/.probe-XXXXXX";
+  const int descriptor = mkstemp(path.data());
+  if (descriptor < 0) return false;
+  close(descriptor);
+  unlink(path.c_str());
+  return true;
 }
 
 }  // namespace splitfusion

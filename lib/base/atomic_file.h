@@ -20,6 +20,10 @@ void WriteFileAtomically(const std::string& path,
 void WritePathAtomically(const std::string& path,
                          const std::function<void(const std::string&)>& write);
 
+/// Whether files can be made in a folder: makes one under a name that none has
+/// and removes it.
+bool CanMakeFiles(const std::string& folder);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_BASE_ATOMIC_FILE_H_

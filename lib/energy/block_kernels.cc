@@ -22,9 +22,6 @@ constexpr int kBlock = 36;
              __builtin_shufflevector(first, second, 1, 3);                \
   } while (false)
 
-// Inlined into every clone: they compute with the clone's vectors.
-#define SPLITFUSION_INLINE inline __attribute__((always_inline))
-
 /// The nine vectors of a block, or what its rows are multiplied with.
 struct NineVectors {
   Vector4 v0, v1, v2, v3, v4, v5, v6, v7, v8;

@@ -20,8 +20,8 @@ TwistedNode TwistNode(const DeformationGraph& graph, int node,
 /// Model points in groups that are carried by the same nodes: what is common to
 /// all residuals of warped points (Eq. 2), whatever their functor.
 ///
-///   x = sum_k w_k [ p_k + offset_k ],   dx/d[omega_k, tau_k] = w_k [-[p_k] J |
-///   1]
+///   x = sum_k w_k [ p_k + offset_k ],
+///   dx/d[omega_k, tau_k] = w_k [-[p_k] J | 1]
 class WarpedPoints {
  public:
   /// Points of one group, adjacent in the order of the class.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/floor_to_int.h"
 #include "splitfusion/lib/render/internal/depth_bounds.h"
 #include "splitfusion/lib/render/internal/ray_bundle.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
@@ -27,13 +28,6 @@ struct Sample {
   float distance = 0;
   Eigen::Vector3f gradient = Eigen::Vector3f::Zero();  // Per voxel.
 };
-
-/// Largest integer that is not above `x`. (std::floor is a function call for
-/// the processors that all are built for.)
-int FloorToInt(float x) {
-  const int truncated = static_cast<int>(x);
-  return truncated - (static_cast<float>(truncated) > x);
-}
 
 /// Reads the cubes of eight voxels that rays cross the surface in.
 class CubeReader {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "splitfusion/lib/base/floor_to_int.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
@@ -25,13 +26,6 @@ openvdb::Coord LeafOrigin(const Eigen::Vector3d& voxel) {
 void SortUnique(std::vector<openvdb::Coord>* origins) {
   std::sort(origins->begin(), origins->end());
   origins->erase(std::unique(origins->begin(), origins->end()), origins->end());
-}
-
-/// Largest integer that is not above `x`. (std::floor is a function call for
-/// the processors that all are built for.)
-int FloorToInt(double x) {
-  const int truncated = static_cast<int>(x);
-  return truncated - (truncated > x ? 1 : 0);
 }
 
 /// The ray of a pixel counted in blocks: at z-depth z its point is in the block

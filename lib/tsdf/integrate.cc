@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "splitfusion/lib/tsdf/check_observation.h"
 #include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
@@ -39,24 +40,20 @@ bool IntegrateLeaf(const internal::FusionImage& image,
       (voxel * Eigen::Vector3f(static_cast<float>(leaf.origin.x()),
                                static_cast<float>(leaf.origin.y()),
                                static_cast<float>(leaf.origin.z())));
-  const float half = 0.5f * voxel * (kLeafSize - 1);
-  const Eigen::Vector3f center =
-      base + camera_from_canonical.linear() * Eigen::Vector3f::Constant(half);
-  if (!InView(camera, center, 1.8f * half)) return false;
   const Eigen::Matrix3f steps = voxel * camera_from_canonical.linear();
-  float corners[8][3];
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3f corner(i & 1, (i >> 1) & 1, (i >> 2) & 1);
-    Eigen::Map<Eigen::Vector3f> at(corners[i]);
-    at = base + (kLeafSize - 1) * (steps * corner);
-  }
-  const internal::ImageBox box =
-      internal::BoundInImage(image.view(), corners, 8);
-  const internal::FusedPart part = image.MayChange(box);
-  if (box.z_low >= part.farthest) return false;
   const float step_rows[3][3] = {{steps(0, 0), steps(1, 0), steps(2, 0)},
                                  {steps(0, 1), steps(1, 1), steps(2, 1)},
                                  {steps(0, 2), steps(1, 2), steps(2, 2)}};
+  const internal::ImageBox box =
+      internal::BoundBlock(image.view(), base.data(), step_rows);
+  if (!box.in_front) {
+    const float half = 0.5f * (kLeafSize - 1);
+    const Eigen::Vector3f center =
+        base + steps * Eigen::Vector3f::Constant(half);
+    if (!InView(camera, center, 1.8f * half * voxel)) return false;
+  }
+  const internal::FusedPart part = image.MayChange(box);
+  if (box.z_low >= part.farthest) return false;
   return internal::FuseRigidLeaf(image.view(), base.data(), step_rows, part,
                                  internal::ToFused(leaf));
 }
@@ -65,6 +62,7 @@ bool IntegrateLeaf(const internal::FusionImage& image,
 
 void IntegrateRigid(const DepthObservation& observation,
                     const Rigid3d& camera_from_canonical, TsdfVolume* volume) {
+  CheckObservation(observation, volume->options());
   TsdfVolume::Grids& grids = volume->grids();
   const internal::FusionImage image(observation, volume->options());
   const Rigid3f motion = camera_from_canonical.cast<float>();

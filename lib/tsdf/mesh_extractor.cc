@@ -171,6 +171,7 @@ MeshExtractor& MeshExtractor::operator=(MeshExtractor&&) noexcept = default;
 
 TriangleMesh MeshExtractor::Extract(const TsdfVolume& volume,
                                     double min_weight) {
+  static_assert(kMaxMinWeight <= internal::kFirmWeight);
   const internal::LeafLookup lookup(volume);
   // The mesh of a block reaches into its neighbours, and the faces around its
   // lowest voxels have corners in the blocks before it.

@@ -13,6 +13,10 @@ namespace splitfusion {
 /// time are meshed anew. Gives what ExtractMesh() gives.
 class MeshExtractor {
  public:
+  /// The most that `min_weight` may be: integration does not tell where the
+  /// weight of a voxel that has more has changed.
+  static constexpr double kMaxMinWeight = 8;
+
   MeshExtractor();
   ~MeshExtractor();
   /// Takes the meshes of the blocks over.
@@ -22,7 +26,8 @@ class MeshExtractor {
 
   /// Triangle mesh of the zero level, see ExtractMesh(). `volume` must be the
   /// one of the calls before, changed by integration only; another one, or
-  /// another `min_weight`, needs another extractor.
+  /// another `min_weight`, needs another extractor. `min_weight`: at most
+  /// kMaxMinWeight.
   TriangleMesh Extract(const TsdfVolume& volume, double min_weight);
 
   /// For every vertex of the last mesh its index in the mesh before, if it has

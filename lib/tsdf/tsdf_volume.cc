@@ -86,6 +86,37 @@ typename Target::Ptr Convert(const Source& source, const Function& convert) {
   return target;
 }
 
+/// What the grids of others have to share with those of fusion.
+///
+/// @throw InputError that names the file.
+void CheckDistances(const openvdb::FloatGrid& distance,
+                    const std::string& path) {
+  const double voxel_size = distance.voxelSize()[0];
+  if (distance.transform() !=
+      *openvdb::math::Transform::createLinearTransform(voxel_size)) {
+    throw InputError(path +
+                     ": grid 'distance' has a transform of its own: expected "
+                     "cubic voxels, (0, 0, 0) at the origin");
+  }
+  if (!(distance.background() > 0)) {
+    throw InputError(path + ": grid 'distance' has background " +
+                     std::to_string(distance.background()) +
+                     ": expected the truncation, metres");
+  }
+}
+
+/// Meshing and ray casting rely on it that what was not observed is free space,
+/// as fusion leaves it.
+void FreeUnobserved(const internal::LeafBuffers& leaf, float free_space) {
+  for (int i = 0; i < internal::kLeafVoxels; ++i) {
+    const bool observed = leaf.weight[i] > 0 && std::isfinite(leaf.weight[i]) &&
+                          std::isfinite(leaf.distance[i]);
+    if (observed) continue;
+    leaf.distance[i] = free_space;
+    leaf.weight[i] = 0;
+  }
+}
+
 }  // namespace
 
 void TsdfOptions::Check() const {
@@ -122,6 +153,7 @@ void TsdfVolume::Grids::Touch(const openvdb::Coord& origin) {
 void TsdfVolume::Grids::Enter() {
   for (auto leaf = distance->tree().beginLeaf(); leaf; ++leaf) {
     Touch(leaf->origin());
+    FreeUnobserved(leaves.back(), distance->background());
     RecordChange(leaves.size() - 1);
   }
 }
@@ -176,6 +208,7 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
     Grids grids;
     grids.distance = FindGrid<openvdb::FloatGrid>(*all, "distance", path);
     grids.weight = FindGrid<openvdb::FloatGrid>(*all, "weight", path);
+    CheckDistances(*grids.distance, path);
     TsdfOptions options;
     options.has_color =
         grids.distance->getMetadata<openvdb::BoolMetadata>(kNoColor) == nullptr;

@@ -84,7 +84,8 @@ class TsdfVolume {
   /// @throw InputError if the file cannot be written.
   void Write(const std::string& path) const;
 
-  /// Reads what Write wrote.
+  /// Reads what Write wrote. In files of others, voxels without a weight, or
+  /// with numbers that are not finite, count as never observed.
   ///
   /// @throw InputError on a missing, truncated or foreign file.
   static TsdfVolume Read(const std::string& path);

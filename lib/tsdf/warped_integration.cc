@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/lib/tsdf/check_observation.h"
 #include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 
@@ -195,8 +196,7 @@ bool IntegrateLeaf(const DepthObservation& observation,
     for (int axis = 0; axis < 3; ++axis) lattice[i][axis] = warped[i][axis];
   }
   const internal::FusionView& view = image.view();
-  const internal::ImageBox box =
-      internal::BoundInImage(view, lattice, kLatticePoints);
+  const internal::ImageBox box = internal::BoundLattice(view, lattice);
   if (box.z_low >= image.MayChange(box).farthest) return false;
   bool foreign[internal::kLatticeCells] = {};
   if (!observation.places.empty()) {
@@ -254,6 +254,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
                                  const SkinningIndex& index,
                                  const WarpField& warp, double reach,
                                  TsdfVolume* volume) {
+  CheckObservation(observation, volume->options());
   TsdfVolume::Grids& grids = volume->grids();
   const std::vector<internal::LeafBuffers>& leaves = grids.leaves;
   const internal::FusionImage image(observation, volume->options());

@@ -34,6 +34,8 @@ class WarpedIntegrator {
 
   /// Fuses one observation. Blocks farther than `reach` (metres) from every
   /// node are left alone.
+  ///
+  /// @throw InputError if an image is missing or not of the camera's size.
   void Integrate(const DepthObservation& observation,
                  const SkinningIndex& index, const WarpField& warp,
                  double reach, TsdfVolume* volume);

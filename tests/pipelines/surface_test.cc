@@ -277,6 +277,12 @@ TEST(SurfaceOptions, RefuseValuesOutOfRange) {
   SurfaceOptions options;
   options.min_mesh_weight = -1;
   ExpectInputError([&] { options.Check(); }, "min_mesh_weight");
+  // Beyond, fusion would not tell that a mesh has to be made anew.
+  options.min_mesh_weight = 8.5;
+  ExpectInputError([&] { options.Check(); },
+                   "min_mesh_weight = 8.5: expected > 0 and at most 8");
+  options.min_mesh_weight = MeshExtractor::kMaxMinWeight;
+  options.Check();
   options = SurfaceOptions();
   options.looks = 0.5;
   ExpectInputError([&] { options.Check(); }, "looks = 0.5");

@@ -73,7 +73,8 @@ TEST(RayCaster, SphereIsWithinAFractionOfAVoxel) {
         largest = std::max(largest, error);
         const Eigen::Vector3d normal = (p - kCenter) / kRadius;
         const cv::Vec3f& n = map.normals(v, u);
-        EXPECT_GT(normal.dot(Eigen::Vector3d(n[0], n[1], n[2])), 0.955);
+        // 16 degrees: a pixel is as wide as a voxel, and steps show on slopes.
+        EXPECT_GT(normal.dot(Eigen::Vector3d(n[0], n[1], n[2])), 0.96);
         EXPECT_EQ(map.color(v, u), cv::Vec3b(0, 0, 255));
       });
   EXPECT_GT(count, 1500);

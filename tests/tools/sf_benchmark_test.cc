@@ -73,6 +73,13 @@ TEST_F(SfBenchmark, ARowThatFailsIsAnError) {
   EXPECT_FALSE(folder_.Has("times.json"));
 }
 
+TEST_F(SfBenchmark, LeavesTheUsersFilesAlone) {
+  folder_.Write("times.json.tmp", "mine");
+  Run("--filter=nothing --json=" + (folder_ / "times.json"));
+  EXPECT_EQ(folder_.Read("times.json.tmp"), "mine");
+  EXPECT_FALSE(folder_.Has("times.json"));
+}
+
 TEST_F(SfBenchmark, RefusesWrongArgumentsBeforeItRuns) {
   for (const auto& [arguments, message] :
        {std::pair("--json=/nowhere/times.json", "cannot be written"),

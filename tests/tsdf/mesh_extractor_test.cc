@@ -94,6 +94,21 @@ TEST(MeshExtractor, ChangesAreMeshedAsIfAllWereMeshedAnew) {
   }
 }
 
+TEST(MeshExtractor, VoxelsThatGetTheLargestMinWeightAreMeshed) {
+  // Nothing but weights changes: the same frame again and again.
+  TsdfVolume volume(kOptions);
+  MeshExtractor extractor;
+  std::size_t vertices = 0;
+  for (int i = 0; i < 10; ++i) {
+    FuseFrame(0, &volume);
+    const TriangleMesh mesh =
+        extractor.Extract(volume, MeshExtractor::kMaxMinWeight);
+    ExpectSame(mesh, ExtractMesh(volume, MeshExtractor::kMaxMinWeight));
+    vertices = mesh.vertices.size();
+  }
+  EXPECT_GT(vertices, 5000u);
+}
+
 TEST(MeshExtractor, TellsWhichVerticesAreUntouched) {
   TsdfVolume volume(kOptions);
   MeshExtractor extractor;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <regex>
@@ -16,6 +15,7 @@
 #include "benchmark_report.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/freed_memory.h"
 
 namespace splitfusion {
 namespace {
@@ -111,10 +111,10 @@ std::string Selection(const std::string& filter) {
 
 /// Says so before anything is run if the file cannot be written.
 void CheckWritable(const std::string& file) {
-  const std::string probe = file + ".tmp";
-  const bool writable = !fs::is_directory(file) && std::ofstream(probe).good();
-  if (!writable) throw InputError("--json=" + file + ": cannot be written");
-  fs::remove(probe);
+  if (fs::is_directory(file) ||
+      !CanMakeFiles(fs::absolute(file).parent_path().string())) {
+    throw InputError("--json=" + file + ": cannot be written");
+  }
 }
 
 int Run(const Arguments& arguments) {
@@ -143,6 +143,7 @@ int Run(const Arguments& arguments) {
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
+  splitfusion::KeepFreedMemory();
   try {
     return splitfusion::Run(splitfusion::ParseArguments(argc, argv));
   } catch (const splitfusion::InputError& error) {

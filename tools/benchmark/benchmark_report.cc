@@ -4,6 +4,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "splitfusion/lib/report/run_summary.h"
+
 namespace splitfusion {
 namespace {
 
@@ -14,12 +16,6 @@ std::string NameOf(const benchmark::BenchmarkReporter::Run& run) {
   const std::string& arguments = run.run_name.args;
   return run.run_name.function_name + (arguments.empty() ? "" : "/") +
          arguments;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::string Fixed(double value, int digits) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "masked_frames.h"
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
@@ -17,47 +18,16 @@ namespace {
 
 constexpr int kFrames = 10;
 
-/// Some frames of the built-in sequence with their detections.
-struct Sequence {
-  Sequence() : scene(Options()) {
-    for (int i = 0; i < kFrames; ++i) {
-      const SyntheticFrame frame = scene.Render(i);
-      frames.push_back(frame.frame);
-      detections.push_back(scene.Detections(frame));
-    }
-  }
-
-  static SyntheticOptions Options() {
-    SyntheticOptions options;
-    options.frames = kFrames;
-    return options;
-  }
-
-  SyntheticScene scene;
-  std::vector<Frame> frames;
-  std::vector<std::vector<InstanceMask>> detections;
-};
-
-/// Hands out the detections of a sequence.
-class GivenDetections : public Segmenter {
- public:
-  explicit GivenDetections(const Sequence& sequence) : sequence_(sequence) {}
-  std::vector<InstanceMask> Segment(const Frame& frame) override {
-    return sequence_.detections[frame.index];
-  }
-
- private:
-  const Sequence& sequence_;
-};
-
 void EndToEnd(benchmark::State& state) {
-  const Sequence sequence;
+  SyntheticOptions options;
+  options.frames = kFrames;
+  const SyntheticScene scene(options);
+  const std::vector<MaskedFrame> film = FilmScene(scene, kFrames);
   for (auto _ : state) {
-    SplitFusion fusion(sequence.scene.camera(), PipelineOptions(), LabelTable(),
-                       std::make_shared<GivenDetections>(sequence),
-                       BuiltinTerms());
+    SplitFusion fusion(scene.camera(), PipelineOptions(), LabelTable(),
+                       std::make_shared<GivenMasks>(film), BuiltinTerms());
     const Stopwatch watch;
-    for (const Frame& frame : sequence.frames) fusion.ProcessFrame(frame);
+    for (const MaskedFrame& frame : film) fusion.ProcessFrame(frame.frame);
     state.SetIterationTime(watch.Seconds() / kFrames);
   }
 }

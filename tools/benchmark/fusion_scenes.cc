@@ -4,23 +4,12 @@
 #include <limits>
 #include <utility>
 
+#include "labelled_view.h"
+#include "splitfusion/lib/association/observe_surface.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
 
 namespace splitfusion {
 namespace {
-
-/// Gives the exact masks of a scene's frames.
-class SceneSegmenter : public Segmenter {
- public:
-  explicit SceneSegmenter(const SyntheticScene& scene) : scene_(scene) {}
-
-  std::vector<InstanceMask> Segment(const Frame& frame) override {
-    return scene_.Detections(scene_.Render(frame.index));
-  }
-
- private:
-  const SyntheticScene& scene_;
-};
 
 SyntheticOptions RoomOptions() {
   SyntheticOptions options;
@@ -67,37 +56,11 @@ TsdfOptions FineVoxels(int truncation, bool has_color) {
   return options;
 }
 
-LiveView MakeLiveView(const SyntheticScene& scene, int frame) {
-  const SyntheticFrame rendered = scene.Render(frame);
-  LiveView live =
-      MakeLiveView(scene.camera(), rendered.frame.depth, rendered.frame.color);
-  rendered.labels.convertTo(live.labels, CV_16U);
-  return live;
-}
-
-DepthObservation ObserveSurface(const LiveView& live, int surface) {
-  DepthObservation observation;
-  observation.camera = live.camera;
-  observation.depth = live.depth;
-  observation.weight = live.confidence;
-  observation.color = live.color;
-  observation.role.create(live.depth.size());
-  for (int v = 0; v < live.depth.rows; ++v) {
-    for (int u = 0; u < live.depth.cols; ++u) {
-      const PixelRole role = live.edges(v, u) != 0          ? PixelRole::kNone
-                             : live.labels(v, u) == surface ? PixelRole::kWrite
-                                                            : PixelRole::kCarve;
-      observation.role(v, u) = static_cast<std::uint8_t>(role);
-    }
-  }
-  return observation;
-}
-
 RoomModel::RoomModel(const TsdfOptions& options) : volume(options) {
   constexpr int kFrames = 4, kStep = 5;
   const SyntheticScene scene(RoomOptions());
   for (int i = 0; i < kFrames; ++i) {
-    observation = ObserveSurface(MakeLiveView(scene, i * kStep), 0);
+    observation = ObserveSurface(LabelledView(scene, i * kStep), 0);
     camera_from_canonical = scene.WorldFromCamera(i * kStep).inverse();
     AllocateBand(observation, camera_from_canonical, &volume);
     if (i + 1 == kFrames) break;
@@ -127,7 +90,7 @@ PersonModel::PersonModel()
       volume(FineVoxels(/*truncation=*/6, /*has_color=*/true)) {
   constexpr int kFrames = 3, kSurface = 1;
   for (int i = 0; i < kFrames; ++i) {
-    const LiveView live = MakeLiveView(scene, i);
+    const LiveView live = LabelledView(scene, i);
     DepthObservation observation = ObserveSurface(live, kSurface);
     SetPlaces(live, kSurface, &observation);
     observations.push_back(std::move(observation));
@@ -151,13 +114,11 @@ void PersonModel::Integrate(int observation) {
 
 TrackedScene::TrackedScene()
     : scene(WalkingPersonOptions()),
+      film(FilmScene(scene, /*count=*/8)),
       fusion(scene.camera(), PipelineOptions(), LabelTable(),
-             std::make_shared<SceneSegmenter>(scene)) {
-  constexpr int kFrames = 8;
-  for (int i = 0; i < kFrames; ++i) {
-    fusion.ProcessFrame(scene.Render(i).frame);
-  }
-  live = MakeLiveView(scene, kFrames - 1);
+             std::make_shared<GivenMasks>(film)),
+      live(LabelledView(scene, film.back().frame.index)) {
+  for (const MaskedFrame& frame : film) fusion.ProcessFrame(frame.frame);
   fusion.labels().copyTo(live.labels);
 }
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
+#include "masked_frames.h"
 #include "splitfusion/lib/association/live_view.h"
 #include "splitfusion/lib/deformation/skinning.h"
-#include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 #include "splitfusion/lib/tsdf/warped_integration.h"
@@ -21,13 +21,6 @@ struct TwoThreads {
   /// Holds TBB to two threads.
   tbb::global_control control{tbb::global_control::max_allowed_parallelism, 2};
 };
-
-/// What a frame of a synthetic scene shows, labelled exactly.
-LiveView MakeLiveView(const SyntheticScene& scene, int frame);
-
-/// What every live pixel may do to the volume of one surface, as the pipeline
-/// has it: nothing next to depth edges.
-DepthObservation ObserveSurface(const LiveView& live, int surface);
 
 /// A volume of the synthetic room: some frames fused under their exact poses.
 struct RoomModel {
@@ -75,8 +68,9 @@ struct TrackedScene {
   static const TrackedScene& Shared();
 
   SyntheticScene scene;
+  std::vector<MaskedFrame> film;  ///< All frames so far.
   SplitFusion fusion;
-  LiveView live;
+  LiveView live;  ///< The last frame.
 };
 
 }  // namespace splitfusion

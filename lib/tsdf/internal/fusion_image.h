@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "splitfusion/lib/tsdf/internal/image_box.h"
 #include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 

@@ -56,7 +56,8 @@ struct TsdfVolume::Grids {
   /// Makes sure that the block with this origin exists in all grids.
   void Touch(const openvdb::Coord& origin);
 
-  /// Enters the blocks of grids that were filled by others.
+  /// Enters the blocks of grids that were filled by others; what has no weight
+  /// becomes free space.
   void Enter();
 
   /// Notes that the present integration changed a block.

@@ -4,12 +4,10 @@
 #include <cstdint>
 #include <cstring>
 
+#include "splitfusion/lib/base/vector_clones.h"
+
 // Nothing below is called: what is passed is no matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
-
-/// Functions that work on vectors are inlined into their callers, once for
-/// every instruction set.
-#define SPLITFUSION_INLINE inline __attribute__((always_inline))
 
 namespace splitfusion {
 namespace internal {

@@ -1,5 +1,6 @@
 #include "splitfusion/lib/tsdf/internal/padded_leaf.h"
 
+#include "splitfusion/lib/base/floor_to_int.h"
 #include "splitfusion/lib/tsdf/internal/packed_color.h"
 
 namespace splitfusion {
@@ -11,9 +12,7 @@ namespace {
 struct Cell {
   Cell(const openvdb::Vec3d& p, const openvdb::Coord& origin) {
     for (int axis = 0; axis < 3; ++axis) {
-      // std::floor is a function call for the baseline processor.
-      const int truncated = static_cast<int>(p[axis]);
-      const int floor = truncated - (truncated > p[axis] ? 1 : 0);
+      const int floor = FloorToInt(p[axis]);
       low[axis] = floor - origin[axis];
       part[axis] = p[axis] - floor;
     }

@@ -2,7 +2,6 @@
 
 #include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
 
-#include <algorithm>
 #include <cstring>
 
 #include "splitfusion/lib/base/vector_clones.h"
@@ -108,26 +107,6 @@ bool HasInside(const FusedLeaf& leaf) {
     if (EightLanes::Any(inside)) return true;
   }
   return false;
-}
-
-ImageBox BoundInImage(const FusionView& view, const float (*points)[3],
-                      int count) {
-  ImageBox box;
-  box.z_low = points[0][2];
-  for (int i = 0; i < count; ++i) box.z_low = std::min(box.z_low, points[i][2]);
-  box.in_front = box.z_low > kNear;
-  if (!box.in_front) return box;
-  box.u_low = box.v_low = 1e30f;
-  box.u_high = box.v_high = -1e30f;
-  for (int i = 0; i < count; ++i) {
-    const float u = view.fx * points[i][0] / points[i][2] + view.cx;
-    const float v = view.fy * points[i][1] / points[i][2] + view.cy;
-    box.u_low = std::min(box.u_low, u);
-    box.u_high = std::max(box.u_high, u);
-    box.v_low = std::min(box.v_low, v);
-    box.v_high = std::max(box.v_high, v);
-  }
-  return box;
 }
 
 }  // namespace internal

@@ -40,10 +40,10 @@ struct FusedPart {
   bool in_image;   ///< All of its voxels are seen.
 };
 
-/// Fuses into a block whose voxel (x, y, z) is at base + x steps[0] + y
-/// steps[1]
-/// + z steps[2], camera frame, metres. Returns whether a mesh may show it: a
-/// distance, a colour, or a weight below kFirmWeight is another one.
+/// Fuses into a block whose voxel (x, y, z) is at
+///   base + x steps[0] + y steps[1] + z steps[2]
+/// (camera frame, metres). Returns whether a mesh may show it: a distance, a
+/// colour, or a weight below kFirmWeight is another one.
 bool FuseRigidLeaf(const FusionView& view, const float base[3],
                    const float steps[3][3], const FusedPart& part,
                    const FusedLeaf& leaf);
@@ -63,17 +63,6 @@ bool FuseWarpedLeaf(const FusionView& view,
 
 /// Whether any distance of a block that has been observed is not positive.
 bool HasInside(const FusedLeaf& leaf);
-
-/// Bounding box of points in depth and in the image.
-struct ImageBox {
-  bool in_front = false;  ///< All points are well in front of the camera.
-  float z_low = 0;        ///< Metres.
-  float u_low = 0, u_high = 0, v_low = 0, v_high = 0;  ///< Pixels.
-};
-
-/// Box around `count` points of the camera frame.
-ImageBox BoundInImage(const FusionView& view, const float (*points)[3],
-                      int count);
 
 }  // namespace internal
 }  // namespace splitfusion

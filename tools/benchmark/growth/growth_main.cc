@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <map>
 #include <string>
 
 #include "growth_curves.h"
+#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/freed_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 
 namespace splitfusion {
@@ -93,11 +94,9 @@ Arguments ParseArguments(int argc, char** argv) {
 void PrepareFolder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  const std::string probe = folder + "/.probe";
-  if (!std::ofstream(probe).good()) {
+  if (!CanMakeFiles(folder)) {
     throw InputError("--output=" + folder + ": cannot be written");
   }
-  fs::remove(probe);
 }
 
 void Run(const Arguments& arguments) {
@@ -114,6 +113,7 @@ void Run(const Arguments& arguments) {
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
+  splitfusion::KeepFreedMemory();
   try {
     splitfusion::Run(splitfusion::ParseArguments(argc, argv));
     return 0;

@@ -10,37 +10,17 @@
 #include <utility>
 
 #include "growth_curves.h"
+#include "masked_frames.h"
 #include "people_scene.h"
 #include "splitfusion/lib/report/frame_parts.h"
+#include "splitfusion/lib/report/run_summary.h"
 #include "splitfusion/pipelines/split_fusion.h"
 
 namespace splitfusion {
 namespace {
 
-/// A frame with its exact masks.
-struct MaskedFrame {
-  Frame frame;
-  std::vector<InstanceMask> masks;
-};
-
-std::vector<MaskedFrame> RenderFrames(const PeopleScene& scene, int count) {
-  std::vector<MaskedFrame> frames;
-  for (int i = 0; i < count; ++i) {
-    const SyntheticFrame rendered = scene.Render(i);
-    frames.push_back({rendered.frame, scene.Detections(rendered)});
-  }
-  return frames;
-}
-
 /// Frames until all people are modelled and grown.
 constexpr int kWarmUp = 4;
-
-/// Hands out the masks of one frame after the other.
-class GivenMasks : public Segmenter {
- public:
-  std::vector<InstanceMask> Segment(const Frame&) override { return masks; }
-  std::vector<InstanceMask> masks;
-};
 
 /// Default options; thresholds in pixels hold for 640x480 and are scaled.
 PipelineOptions OptionsFor(const PinholeCamera& camera) {
@@ -69,12 +49,11 @@ class Threads {
 };
 
 std::vector<FrameReport> RunMethod(const PinholeCamera& camera,
-                                   const std::vector<MaskedFrame>& frames) {
-  const auto masks = std::make_shared<GivenMasks>();
-  SplitFusion fusion(camera, OptionsFor(camera), LabelTable(), masks);
+                                   const std::vector<MaskedFrame>& film) {
+  SplitFusion fusion(camera, OptionsFor(camera), LabelTable(),
+                     std::make_shared<GivenMasks>(film));
   std::vector<FrameReport> reports;
-  for (const MaskedFrame& frame : frames) {
-    masks->masks = frame.masks;
+  for (const MaskedFrame& frame : film) {
     reports.push_back(fusion.ProcessFrame(frame.frame));
   }
   return reports;
@@ -94,12 +73,6 @@ void KeepFastest(const std::vector<FrameReport>& run,
   }
 }
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Median over the frames after the first ones.
 double MedianSeconds(const std::vector<FrameReport>& reports,
                      double FrameReport::*seconds) {
@@ -115,13 +88,13 @@ double MedianSeconds(const std::vector<FrameReport>& reports,
 struct PeopleRuns {
   int people;
   PinholeCamera camera;
-  std::vector<MaskedFrame> frames;
+  std::vector<MaskedFrame> film;
   std::vector<FrameReport> all_cores, one_thread;
 };
 
 PeopleRuns Film(int people, const GrowthSizes& sizes) {
   const PeopleScene scene(people, sizes.run_height);
-  return {people, scene.camera(), RenderFrames(scene, sizes.frames), {}, {}};
+  return {people, scene.camera(), FilmScene(scene, sizes.frames), {}, {}};
 }
 
 /// Rows of one scene, parts on one thread.
@@ -150,7 +123,7 @@ GrowthTable PeopleCurve(const GrowthSizes& sizes) {
     const Threads threads(alone ? 1 : 0);
     for (int run = 0; run < sizes.runs; ++run) {
       for (PeopleRuns& scene : scenes) {
-        KeepFastest(RunMethod(scene.camera, scene.frames),
+        KeepFastest(RunMethod(scene.camera, scene.film),
                     alone ? &scene.one_thread : &scene.all_cores);
       }
     }

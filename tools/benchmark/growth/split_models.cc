@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "labelled_view.h"
 #include "people_scene.h"
 #include "splitfusion/lib/association/projective_association.h"
 #include "splitfusion/pipelines/surface_tracker.h"
@@ -11,14 +12,6 @@ namespace {
 
 constexpr int kPeople = 2;
 constexpr int kStride = 4;  // Of the points, as in the non-rigid stages.
-
-LiveView ViewOf(const PeopleScene& scene, int frame) {
-  const SyntheticFrame rendered = scene.Render(frame);
-  LiveView live =
-      MakeLiveView(scene.camera(), rendered.frame.depth, rendered.frame.color);
-  rendered.labels.convertTo(live.labels, CV_16U);
-  return live;
-}
 
 Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
@@ -70,8 +63,8 @@ LiveView WithoutLabels(LiveView live) {
 
 FramePair::FramePair(int height) {
   const PeopleScene scene(kPeople, height);
-  before = ViewOf(scene, 0);
-  after = ViewOf(scene, 1);
+  before = LabelledView(scene, 0);
+  after = LabelledView(scene, 1);
   const WarpField still(MakeRigidGraph(Rigid3d::Identity()));
   const AssociationGates gates = TrackerOptions::Defaults().non_rigid[0].gates;
   for (int label = 0; label <= kPeople; ++label) {

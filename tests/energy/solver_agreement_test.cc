@@ -1,0 +1,87 @@
+// Every solver against Ceres by default, on a problem with a user's term.
+
+#include <gtest/gtest.h>
+
+#include "splitfusion/lib/energy/solver.h"
+#include "support/custom_energy.h"
+#include "support/sample_correspondences.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+
+namespace splitfusion {
+namespace {
+
+SolverOptions Thorough() {
+  SolverOptions options;
+  options.max_iterations = 50;
+  options.function_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-12;
+  return options;
+}
+
+struct Choice {
+  const char* solver;
+  const char* linear_solver;
+  const char* preconditioner;
+  const char* trust_region;
+};
+
+class EverySolver : public ::testing::TestWithParam<Choice> {};
+
+TEST_P(EverySolver, FindsTheSameMinimum) {
+  const TriangleMesh mesh = CornerMesh(0.02);
+  const DeformationGraph start = CoverWithNodes(mesh, 0.04);
+  const auto correspondences = PerfectAssociation(
+      mesh, start, [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  const Energy energy = EnergyWithCustomTerm();
+  const SurfaceProblem problem{energy, correspondences, PinholeCamera()};
+  DeformationGraph reference = start;
+  const double cost =
+      MinimizeWithCeres(problem, Thorough(), &reference).final_cost;
+  SolverOptions options = Thorough();
+  options.solver = GetParam().solver;
+  options.linear_solver = GetParam().linear_solver;
+  options.preconditioner = GetParam().preconditioner;
+  options.trust_region = GetParam().trust_region;
+  options.eta = 1e-6;
+  options.max_linear_solver_iterations = 1000;
+  options.Check();
+  DeformationGraph graph = start;
+  const SolverReport report = Minimize(problem, options, &graph);
+  EXPECT_TRUE(report.usable);
+  EXPECT_EQ(report.termination, "CONVERGENCE");
+  EXPECT_NEAR(report.final_cost, cost, 1e-6 * cost);
+  const bool direct = options.solver != std::string("gn_pcg");
+  EXPECT_LE(report.iterations.back().linear_residual, direct ? 1e-9 : 1e-6);
+  for (int i = 0; i < graph.size(); ++i) {
+    EXPECT_LT((graph.motions[i].translation - reference.motions[i].translation)
+                  .norm(),
+              1e-5);
+  }
+}
+
+constexpr char kLm[] = "levenberg_marquardt";
+INSTANTIATE_TEST_SUITE_P(
+    Names, EverySolver,
+    ::testing::Values(
+        Choice{"gn_pcg", "auto", "jacobi", kLm},
+        Choice{"gn_pcg", "auto", "identity", kLm},
+        Choice{"gn_pcg", "auto", "block_ic0", kLm},
+        Choice{"gn_cholesky", "auto", "jacobi", kLm},
+        Choice{"ceres", "auto", "jacobi", kLm},
+        Choice{"ceres", "dense_qr", "jacobi", kLm},
+        Choice{"ceres", "dense_normal_cholesky", "jacobi", kLm},
+        Choice{"ceres", "sparse_normal_cholesky", "jacobi", kLm},
+        Choice{"ceres", "cgnr", "jacobi", kLm},
+        Choice{"ceres", "cgnr", "identity", kLm},
+        Choice{"ceres", "auto", "jacobi", "dogleg"},
+        Choice{"ceres", "dense_qr", "jacobi", "dogleg"},
+        Choice{"ceres", "dense_normal_cholesky", "jacobi", "dogleg"},
+        Choice{"ceres", "sparse_normal_cholesky", "jacobi", "dogleg"}),
+    [](const auto& info) {
+      return std::string(info.param.solver) + "_" + info.param.linear_solver +
+             "_" + info.param.preconditioner + "_" + info.param.trust_region;
+    });
+
+}  // namespace
+}  // namespace splitfusion

@@ -1,0 +1,151 @@
+// What every solver promises of its report and of the graph, whatever the
+// problem: costs that add up, the same bytes again, nothing after a failure.
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cstring>
+#include <limits>
+
+#include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/energy/solver.h"
+#include "support/custom_energy.h"
+#include "support/sample_correspondences.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+
+namespace splitfusion {
+namespace {
+
+bool SameBytes(const DeformationGraph& a, const DeformationGraph& b) {
+  return a.motions.size() == b.motions.size() &&
+         std::memcmp(a.motions.data(), b.motions.data(),
+                     a.motions.size() * sizeof(NodeMotion)) == 0;
+}
+
+class BentPlateProblem : public ::testing::TestWithParam<const char*> {
+ protected:
+  BentPlateProblem() : start_(CoverWithNodes(mesh_, 0.04)) {
+    Shake(0.005, /*seed=*/1, &start_);
+    correspondences_ = PerfectAssociation(
+        mesh_, start_,
+        [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  }
+
+  /// Minimises with the solver under test.
+  SolverReport Run(SolverOptions options, DeformationGraph* graph,
+                   double prior_factor = 1) const {
+    options.solver = GetParam();
+    return Minimize({energy_, correspondences_, PinholeCamera(), prior_factor},
+                    options, graph);
+  }
+
+  const TriangleMesh mesh_ = PlateMesh(0.2, 0.1, 0.02, 1);
+  const Energy energy_ = ParseEnergy(
+      "point_to_plane(loss=tukey,scale=0.05) arap(weight=3)", BuiltinTerms());
+  DeformationGraph start_;
+  std::vector<Correspondence> correspondences_;
+};
+
+TEST_P(BentPlateProblem, ReportAccountsForTheCost) {
+  DeformationGraph graph = start_;
+  SolverOptions options;
+  options.max_iterations = 5;
+  const SolverReport report = Run(options, &graph);
+  ASSERT_EQ(report.terms.size(), 2u);
+  EXPECT_EQ(report.terms[0].term, "point_to_plane");
+  EXPECT_EQ(report.terms[1].term, "arap");
+  EXPECT_EQ(report.terms[0].residual_vectors,
+            static_cast<int>(mesh_.vertices.size()));
+  EXPECT_NEAR(report.terms[0].initial + report.terms[1].initial,
+              report.initial_cost, 1e-9 * report.initial_cost);
+  EXPECT_NEAR(report.terms[0].final + report.terms[1].final, report.final_cost,
+              1e-9 * report.initial_cost);
+  EXPECT_LT(report.final_cost, report.initial_cost);
+  EXPECT_EQ(report.parameters, 6 * graph.size());
+  ASSERT_GE(report.iterations.size(), 2u);
+  EXPECT_EQ(report.iterations[0].iteration, 0);
+  EXPECT_EQ(report.iterations[0].cost, report.initial_cost);
+  for (const SolverIteration& iteration : report.iterations) {
+    EXPECT_LE(iteration.cost, report.initial_cost);
+    EXPECT_GT(iteration.trust_region_radius, 0);
+  }
+  EXPECT_TRUE(report.full_report.empty());
+}
+
+TEST_P(BentPlateProblem, AnnealingCountsForThePriorAlone) {
+  DeformationGraph graph = start_;
+  const SolverReport plain = Run(SolverOptions(), &graph);
+  graph = start_;
+  const SolverReport annealed = Run(SolverOptions(), &graph, 8);
+  EXPECT_NEAR(annealed.terms[0].initial, plain.terms[0].initial, 1e-12);
+  EXPECT_NEAR(annealed.terms[1].initial, 8 * plain.terms[1].initial,
+              1e-9 * annealed.terms[1].initial);
+}
+
+TEST_P(BentPlateProblem, AStepFromTheResultStartsAtItsCost) {
+  // What the report says of the twists holds for the composed motions, too.
+  DeformationGraph graph = start_;
+  const SolverReport first = Run(SolverOptions(), &graph);
+  const SolverReport second = Run(SolverOptions(), &graph);
+  EXPECT_NEAR(second.initial_cost, first.final_cost, 1e-9 * first.final_cost);
+}
+
+TEST_P(BentPlateProblem, TwoRunsGiveTheSameBytes) {
+  DeformationGraph first = start_, second = start_;
+  Run(SolverOptions(), &first);
+  const tbb::global_control one_thread(
+      tbb::global_control::max_allowed_parallelism, 1);
+  Run(SolverOptions(), &second);
+  EXPECT_TRUE(SameBytes(first, second));
+  EXPECT_FALSE(SameBytes(first, start_));
+}
+
+TEST_P(BentPlateProblem, AFailureLeavesTheGraphAsItWas) {
+  correspondences_[3].target.x() = std::numeric_limits<float>::quiet_NaN();
+  DeformationGraph graph = start_;
+  const SolverReport report = Run(SolverOptions(), &graph);
+  EXPECT_FALSE(report.usable);
+  EXPECT_EQ(report.termination, "FAILURE");
+  EXPECT_FALSE(report.message.empty());
+  EXPECT_TRUE(SameBytes(graph, start_));
+}
+
+TEST_P(BentPlateProblem, NodesWithoutAnyPointStayWhereThePriorHoldsThem) {
+  correspondences_.resize(1);
+  DeformationGraph graph = start_;
+  SolverOptions options;
+  options.max_iterations = 50;
+  options.function_tolerance = options.parameter_tolerance = 1e-12;
+  const SolverReport report = Run(options, &graph);
+  EXPECT_TRUE(report.usable);
+  for (const NodeMotion& motion : graph.motions) {
+    EXPECT_TRUE(motion.translation.allFinite());
+    EXPECT_LT(motion.translation.norm(), 0.3);
+  }
+}
+
+TEST_P(BentPlateProblem, ThreadsDoNotChangeAByteOfALargerProblem) {
+  const TriangleMesh mesh = CornerMesh(0.005);
+  DeformationGraph graph = CoverWithNodes(mesh, 0.02);
+  const auto correspondences = PerfectAssociation(
+      mesh, graph, [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  const Energy energy = EnergyWithCustomTerm();
+  SolverOptions options;
+  options.solver = GetParam();
+  DeformationGraph results[2] = {graph, graph};
+  for (const int threads : {1, 2}) {
+    const tbb::global_control control(
+        tbb::global_control::max_allowed_parallelism, threads);
+    Minimize({energy, correspondences, PinholeCamera()}, options,
+             &results[threads - 1]);
+  }
+  EXPECT_TRUE(SameBytes(results[0], results[1]));
+  EXPECT_FALSE(SameBytes(results[0], graph));
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, BentPlateProblem,
+                         ::testing::Values("ceres", "gn_pcg", "gn_cholesky"));
+
+}  // namespace
+}  // namespace splitfusion
