@@ -30,32 +30,45 @@ bool InView(const PinholeCamera& camera, const Eigen::Vector3f& center,
          v < static_cast<float>(camera.height) + 2 * margin_y;
 }
 
-/// Fuses into one block under a rigid motion; see FuseRigidLeaf().
-bool IntegrateLeaf(const internal::FusionImage& image,
-                   const PinholeCamera& camera,
-                   const Rigid3f& camera_from_canonical, float voxel,
-                   const internal::LeafBuffers& leaf) {
-  const Eigen::Vector3f base =
-      camera_from_canonical *
-      (voxel * Eigen::Vector3f(static_cast<float>(leaf.origin.x()),
-                               static_cast<float>(leaf.origin.y()),
-                               static_cast<float>(leaf.origin.z())));
-  const Eigen::Matrix3f steps = voxel * camera_from_canonical.linear();
-  const float step_rows[3][3] = {{steps(0, 0), steps(1, 0), steps(2, 0)},
-                                 {steps(0, 1), steps(1, 1), steps(2, 1)},
-                                 {steps(0, 2), steps(1, 2), steps(2, 2)}};
-  const internal::ImageBox box =
-      internal::BoundBlock(image.view(), base.data(), step_rows);
-  if (!box.in_front) {
-    const float half = 0.5f * (kLeafSize - 1);
-    const Eigen::Vector3f center =
-        base + steps * Eigen::Vector3f::Constant(half);
-    if (!InView(camera, center, 1.8f * half * voxel)) return false;
+/// What the blocks of a volume have in common.
+struct RigidMotion {
+  RigidMotion(const Rigid3d& camera_from_canonical, double voxel_size)
+      : camera_from_canonical(camera_from_canonical.cast<float>()),
+        voxel(static_cast<float>(voxel_size)),
+        axes(voxel * this->camera_from_canonical.linear()) {
+    for (int from = 0; from < 3; ++from) {
+      for (int to = 0; to < 3; ++to) steps[from][to] = axes(to, from);
+    }
   }
-  const internal::FusedPart part = image.MayChange(box);
-  if (box.z_low >= part.farthest) return false;
-  return internal::FuseRigidLeaf(image.view(), base.data(), step_rows, part,
-                                 internal::ToFused(leaf));
+
+  Rigid3f camera_from_canonical;
+  float voxel;           // Metres.
+  Eigen::Matrix3f axes;  // From one voxel to the next.
+  float steps[3][3];     // The same as FuseRigidBlocks() has it.
+};
+
+/// Where a block is, and what of it may change; false: nothing.
+bool FindBlock(const internal::FusionImage& image, const PinholeCamera& camera,
+               const RigidMotion& motion, const internal::LeafBuffers& leaf,
+               internal::RigidBlock* block) {
+  const Eigen::Vector3f origin(static_cast<float>(leaf.origin.x()),
+                               static_cast<float>(leaf.origin.y()),
+                               static_cast<float>(leaf.origin.z()));
+  Eigen::Map<Eigen::Vector3f> base(block->base);
+  base = motion.camera_from_canonical * (motion.voxel * origin);
+  const internal::ImageBox box =
+      internal::BoundBlock(image.view(), block->base, motion.steps);
+  if (!box.in_front) {
+    constexpr float kHalf = 0.5f * (kLeafSize - 1);
+    const Eigen::Vector3f center =
+        base + motion.axes * Eigen::Vector3f::Constant(kHalf);
+    if (!InView(camera, center, 1.8f * kHalf * motion.voxel)) return false;
+  }
+  block->part = image.MayChange(box);
+  block->leaf = internal::ToFused(leaf);
+  if (box.z_low >= block->part.farthest) return false;
+  if (box.in_front) image.Prefetch(box);
+  return true;
 }
 
 }  // namespace
@@ -65,19 +78,26 @@ void IntegrateRigid(const DepthObservation& observation,
   CheckObservation(observation, volume->options());
   TsdfVolume::Grids& grids = volume->grids();
   const internal::FusionImage image(observation, volume->options());
-  const Rigid3f motion = camera_from_canonical.cast<float>();
-  const float voxel = static_cast<float>(volume->options().voxel_size);
+  const RigidMotion motion(camera_from_canonical, volume->options().voxel_size);
   ++grids.time;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grids.leaves.size(), 16),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i < range.end();
-                           ++i) {
-                        if (IntegrateLeaf(image, observation.camera, motion,
-                                          voxel, grids.leaves[i])) {
-                          grids.RecordChange(i);
-                        }
-                      }
-                    });
+  constexpr std::size_t kBatch = 16;  // Blocks.
+  const std::size_t batches = (grids.leaves.size() + kBatch - 1) / kBatch;
+  tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
+    internal::RigidBlock blocks[kBatch];
+    std::size_t numbers[kBatch];
+    int count = 0;
+    const std::size_t begin = batch * kBatch;
+    const std::size_t end = std::min(begin + kBatch, grids.leaves.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      numbers[count] = i;
+      count += FindBlock(image, observation.camera, motion, grids.leaves[i],
+                         &blocks[count]);
+    }
+    internal::FuseRigidBlocks(image.view(), motion.steps, blocks, count);
+    for (int i = 0; i < count; ++i) {
+      if (blocks[i].changed) grids.RecordChange(numbers[i]);
+    }
+  });
 }
 
 }  // namespace splitfusion

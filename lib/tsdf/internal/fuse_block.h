@@ -55,7 +55,7 @@ SPLITFUSION_INLINE void FuseSlab(const FusionView& view,
   }
   for (int i = 0; i < slab.kPacks; ++i) {
     if (!Pack::Any(rows[i].changes)) continue;
-    FuseRow<Pack>(view, slab.pixel[i], rows[i],
+    FuseRow<Pack>(view, slab.pixel[i], slab.z[i], rows[i],
                   VoxelsFrom(leaf, i * Pack::kCount), changed);
   }
 }
@@ -110,22 +110,21 @@ struct RigidSlab {
   float nearest;                           // The least of them.
 };
 
-/// FuseRigid() with `kAllInside`: all voxels are in the image.
+/// FuseRigid() of one block; `kAllInside`: all of its voxels are in the image.
 template <typename Pack, bool kAllInside>
-SPLITFUSION_INLINE bool FuseRigidPart(const FusionView& view,
-                                      const float base[3],
-                                      const float steps[3][3], float farthest,
-                                      const FusedLeaf& leaf) {
-  PrefetchSlab(leaf, 0);
-  PrefetchSlab(leaf, 1);
-  const RigidSlab<Pack> slab(view, steps);
-  const SeenPoint start(view, base), along_x(view, steps[0]);
+SPLITFUSION_INLINE bool FuseRigidBlock(const FusionView& view,
+                                       const RigidSlab<Pack>& slab,
+                                       const SeenPoint& along_x,
+                                       const RigidBlock& block) {
+  PrefetchSlab(block.leaf, 0);
+  PrefetchSlab(block.leaf, 1);
+  const SeenPoint start(view, block.base);
+  const float farthest = block.part.farthest;
   SeenSlab<Pack> seen;
   for (auto& foreign : seen.foreign) foreign = typename Pack::Whole{};
   typename Pack::Whole changed = {};
   for (int x = 0; x < kSide; ++x) {
-    const float ahead = start.axes[2] + static_cast<float>(x + 2) * along_x.axes[2];
-    if (x + 2 < kSide && ahead + slab.nearest <= farthest) PrefetchSlab(leaf, x + 2);
+    if (x + 2 < kSide) PrefetchSlab(block.leaf, x + 2);
     float corner[3];
     for (int axis = 0; axis < 3; ++axis) {
       corner[axis] =
@@ -142,21 +141,25 @@ SPLITFUSION_INLINE bool FuseRigidPart(const FusionView& view,
       std::memcpy(seen.pixel[i], &pixel, sizeof(pixel));
       seen.z[i] = at.z;
     }
-    FuseSlab<Pack>(view, seen, VoxelsFrom(leaf, x * kSlab), &changed);
+    FuseSlab<Pack>(view, seen, VoxelsFrom(block.leaf, x * kSlab), &changed);
   }
   return Pack::Any(Pack::NotZero(changed));
 }
 
-/// Fuses into a block that is carried rigidly; see FuseRigidLeaf().
+/// See FuseRigidBlocks().
 template <typename Pack>
-SPLITFUSION_INLINE bool FuseRigid(const FusionView& view, const float base[3],
-                                  const float steps[3][3],
-                                  const FusedPart& part,
-                                  const FusedLeaf& leaf) {
-  return part.in_image
-             ? FuseRigidPart<Pack, true>(view, base, steps, part.farthest, leaf)
-             : FuseRigidPart<Pack, false>(view, base, steps, part.farthest,
-                                          leaf);
+SPLITFUSION_INLINE void FuseRigid(const FusionView& view,
+                                  const float steps[3][3], RigidBlock* blocks,
+                                  int count) {
+  const RigidSlab<Pack> slab(view, steps);
+  const SeenPoint along_x(view, steps[0]);
+  for (int i = 0; i < count; ++i) {
+    RigidBlock& block = blocks[i];
+    block.changed =
+        block.part.in_image
+            ? FuseRigidBlock<Pack, true>(view, slab, along_x, block)
+            : FuseRigidBlock<Pack, false>(view, slab, along_x, block);
+  }
 }
 
 }  // namespace internal

@@ -41,14 +41,19 @@ SPLITFUSION_INLINE typename Pack::Whole PixelsOf(const FusionView& view,
   // Added to a number, it leaves the nearest integer in the lowest bits.
   constexpr float kRounding = 12582912.0f;  // 1.5 * 2^23
   const Real inverse_z = 1 / at.z;
-  const Whole zero = Pack::Bits(Real{} + kRounding);
-  const Whole u = Pack::Bits(at.zu * inverse_z + kRounding) - zero;
-  const Whole v = Pack::Bits(at.zv * inverse_z + kRounding) - zero;
-  const Whole pixel = v * view.width + u;
+  std::int32_t zero;
+  std::memcpy(&zero, &kRounding, sizeof(zero));
+  const Whole u = Pack::Bits(at.zu * inverse_z + kRounding);
+  const Whole v = Pack::Bits(at.zv * inverse_z + kRounding);
+  // Unsigned: both lines may wrap.
+  const std::uint32_t width = view.width;
+  const Whole pixel =
+      v * view.width + u - static_cast<std::int32_t>(zero * (width + 1));
   if (kAllInside) return pixel;
-  const typename Pack::Mask inside = Pack::Less(Real{} + kNear, at.z) &
-                                     Pack::Within(u, Whole{} + view.width) &
-                                     Pack::Within(v, Whole{} + view.height);
+  const typename Pack::Mask inside =
+      Pack::Less(Real{} + kNear, at.z) &
+      Pack::Within(u - zero, Whole{} + view.width) &
+      Pack::Within(v - zero, Whole{} + view.height);
   return Pack::Select(inside, pixel, Whole{} + view.width * view.height);
 }
 
@@ -82,7 +87,6 @@ SPLITFUSION_INLINE void BlendColors(const FusionView& view,
 template <typename Pack>
 struct SeenRow {
   typename Pack::Real depth, weight;  ///< Of the pixels, as FusionPixel.
-  typename Pack::Real sdf;            ///< Metres; positive in front.
   typename Pack::Mask changes;        ///< Says something.
 };
 
@@ -97,12 +101,12 @@ SPLITFUSION_INLINE void SeeRow(const FusionView& view,
   Pack::GatherPairs(reinterpret_cast<const float(*)[2]>(view.pixels), pixel,
                     &row->depth, &row->weight);
   row->weight = Pack::FromBits(Pack::Bits(row->weight) | foreign);
-  row->sdf = row->depth - z;
+  const typename Pack::Real sdf = row->depth - z;
   // In front of the truncation, or behind it if the pixel writes.
   const typename Pack::Whole writes = ~Pack::Bits(row->weight) & INT32_MIN;
   const typename Pack::Real reach = Pack::FromBits(
       Pack::Bits(typename Pack::Real{} + view.truncation) | writes);
-  row->changes = Pack::Less(reach, row->sdf);
+  row->changes = Pack::Less(reach, sdf);
 }
 
 /// Fuses what is seen into voxels that are side by side in memory, from `leaf`
@@ -110,11 +114,13 @@ SPLITFUSION_INLINE void SeeRow(const FusionView& view,
 template <typename Pack>
 SPLITFUSION_INLINE void FuseRow(const FusionView& view,
                                 const std::int32_t pixel[Pack::kCount],
+                                const typename Pack::Real& z,
                                 const SeenRow<Pack>& row, const FusedLeaf& leaf,
                                 typename Pack::Whole* changed) {
   using Real = typename Pack::Real;
   using Mask = typename Pack::Mask;
   const Real truncation = Real{} + view.truncation;
+  const Real sdf = row.depth - z;  // Metres; positive in front.
   Real old_distance, old_weight;
   std::memcpy(&old_distance, leaf.distance, sizeof(Real));
   std::memcpy(&old_weight, leaf.weight, sizeof(Real));
@@ -123,7 +129,7 @@ SPLITFUSION_INLINE void FuseRow(const FusionView& view,
   const Real sigma = static_cast<float>(kLeastDepthSigma) +
                      static_cast<float>(kDepthSigmaGrowth) * d * d;
   const Mask free_space =
-      Pack::Less(truncation + kFreeSpaceSigmas * sigma, row.sdf);
+      Pack::Less(truncation + kFreeSpaceSigmas * sigma, sdf);
   const Real seen_weight = Pack::FromBits(Pack::Bits(row.weight) & INT32_MAX);
   const Real confidence =
       Pack::Select(free_space, Real{} + kFreeSpaceWeight, seen_weight);
@@ -131,7 +137,7 @@ SPLITFUSION_INLINE void FuseRow(const FusionView& view,
   // Nothing and nothing is nothing.
   const Real blend = confidence / Pack::Higher(sum, Real{} + 1e-30f);
   Real distance =
-      old_distance + blend * (Pack::Lower(truncation, row.sdf) - old_distance);
+      old_distance + blend * (Pack::Lower(truncation, sdf) - old_distance);
   const Mask emptied = free_space & Pack::Less(0.9f * truncation, distance);
   const Real cap = Pack::Select(emptied, Real{} + view.max_free_weight,
                                 Real{} + view.max_weight);
@@ -146,7 +152,7 @@ SPLITFUSION_INLINE void FuseRow(const FusionView& view,
   std::memcpy(leaf.distance, &distance, sizeof(Real));
   std::memcpy(leaf.weight, &weight, sizeof(Real));
   if (leaf.color == nullptr) return;
-  const Mask colored = row.changes & Pack::Less(row.sdf, truncation);
+  const Mask colored = row.changes & Pack::Less(sdf, truncation);
   if (!Pack::Any(colored)) return;
   BlendColors<Pack>(view, pixel, blend, colored, leaf.color, changed);
 }

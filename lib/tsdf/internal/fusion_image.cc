@@ -109,5 +109,23 @@ FusedPart FusionImage::MayChange(const ImageBox& box) const {
   return {farthest + kDepthMargin, in_image};
 }
 
+void FusionImage::Prefetch(const ImageBox& box) const {
+  constexpr int kLine = 64 / sizeof(FusionPixel);
+  const auto inside = [](float pixel, int end) {
+    return static_cast<int>(
+        std::clamp(pixel, 0.0f, static_cast<float>(end - 1)));
+  };
+  const int u_low = inside(box.u_low, view_.width);
+  const int u_high = inside(box.u_high, view_.width);
+  const int v_high = inside(box.v_high, view_.height);
+  for (int v = inside(box.v_low, view_.height); v <= v_high; ++v) {
+    const FusionPixel* row =
+        &pixels_[static_cast<std::size_t>(v) * view_.width];
+    for (int u = u_low; u < u_high + kLine; u += kLine) {
+      __builtin_prefetch(row + u);
+    }
+  }
+}
+
 }  // namespace internal
 }  // namespace splitfusion

@@ -30,6 +30,9 @@ class FusionImage {
   /// enough, and none that is not nearer than `farthest`.
   FusedPart MayChange(const ImageBox& box) const;
 
+  /// Asks the memory for the pixels within a box that is in front.
+  void Prefetch(const ImageBox& box) const;
+
  private:
   static constexpr int kTile = 8;  // Pixels.
 

@@ -13,7 +13,7 @@ struct ImageBox {
   float u_low = 0, u_high = 0, v_low = 0, v_high = 0;  ///< Pixels.
 };
 
-/// Box around the voxels of a block, given as FuseRigidLeaf() has it.
+/// Box around the voxels of a block, given as FuseRigidBlocks() has it.
 ImageBox BoundBlock(const FusionView& view, const float base[3],
                     const float steps[3][3]);
 

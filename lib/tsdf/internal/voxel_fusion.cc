@@ -46,18 +46,16 @@ SPLITFUSION_INLINE void InterpolateRow(const float plane[9][3], int y, int axis,
 }  // namespace
 
 SPLITFUSION_VECTOR_CLONES
-bool FuseRigidNarrow(const FusionView& view, const float base[3],
-                     const float steps[3][3], const FusedPart& part,
-                     const FusedLeaf& leaf) {
+void FuseRigidNarrow(const FusionView& view, const float steps[3][3],
+                     RigidBlock* blocks, int count) {
   const FusionView local = view;  // Which no voxel's address can be that of.
-  return FuseRigid<EightLanes>(local, base, steps, part, leaf);
+  FuseRigid<EightLanes>(local, steps, blocks, count);
 }
 
-bool FuseRigidLeaf(const FusionView& view, const float base[3],
-                   const float steps[3][3], const FusedPart& part,
-                   const FusedLeaf& leaf) {
+void FuseRigidBlocks(const FusionView& view, const float steps[3][3],
+                     RigidBlock* blocks, int count) {
   static const auto fuse = HasWideLanes() ? FuseRigidWide : FuseRigidNarrow;
-  return fuse(view, base, steps, part, leaf);
+  fuse(view, steps, blocks, count);
 }
 
 SPLITFUSION_WIDEST_VECTOR_CLONES

@@ -40,13 +40,21 @@ struct FusedPart {
   bool in_image;   ///< All of its voxels are seen.
 };
 
-/// Fuses into a block whose voxel (x, y, z) is at
+/// A block that is carried rigidly, whose voxel (x, y, z) is at
 ///   base + x steps[0] + y steps[1] + z steps[2]
-/// (camera frame, metres). Returns whether a mesh may show it: a distance, a
-/// colour, or a weight below kFirmWeight is another one.
-bool FuseRigidLeaf(const FusionView& view, const float base[3],
-                   const float steps[3][3], const FusedPart& part,
-                   const FusedLeaf& leaf);
+/// (camera frame, metres).
+struct RigidBlock {
+  float base[3];
+  FusedPart part;
+  FusedLeaf leaf;
+  /// Whether a mesh may show it: a distance, a colour, or a weight below
+  /// kFirmWeight is another one.
+  bool changed;
+};
+
+/// Fuses into blocks one after the other; sets `changed`.
+void FuseRigidBlocks(const FusionView& view, const float steps[3][3],
+                     RigidBlock* blocks, int count);
 
 /// Points of a block that are warped: every fourth voxel, 3 x 3 x 3.
 constexpr int kLatticePoints = 27;
@@ -55,8 +63,8 @@ constexpr int kLatticeCells = 8;
 
 /// Fuses into a block whose every fourth voxel is at `lattice` (camera frame,
 /// metres; z varies fastest), and whose others are interpolated. Into cells
-/// marked as `foreign` (z varies fastest) only free space is fused. Returns the
-/// same.
+/// marked as `foreign` (z varies fastest) only free space is fused. Returns
+/// RigidBlock::changed.
 bool FuseWarpedLeaf(const FusionView& view,
                     const float lattice[kLatticePoints][3],
                     const bool foreign[kLatticeCells], const FusedLeaf& leaf);

@@ -21,11 +21,10 @@
 namespace splitfusion {
 namespace internal {
 
-bool FuseRigidWide(const FusionView& view, const float base[3],
-                   const float steps[3][3], const FusedPart& part,
-                   const FusedLeaf& leaf) {
+void FuseRigidWide(const FusionView& view, const float steps[3][3],
+                   RigidBlock* blocks, int count) {
   const FusionView local = view;  // Which no voxel's address can be that of.
-  return FuseRigid<SixteenLanes>(local, base, steps, part, leaf);
+  FuseRigid<SixteenLanes>(local, steps, blocks, count);
 }
 
 #pragma GCC pop_options

@@ -9,10 +9,9 @@ namespace internal {
 /// Whether this processor, and this build, can do the following.
 bool HasWideLanes();
 
-/// FuseRigidLeaf() sixteen voxels at a time: the same numbers, sooner.
-bool FuseRigidWide(const FusionView& view, const float base[3],
-                   const float steps[3][3], const FusedPart& part,
-                   const FusedLeaf& leaf);
+/// FuseRigidBlocks() sixteen voxels at a time: the same numbers, sooner.
+void FuseRigidWide(const FusionView& view, const float steps[3][3],
+                   RigidBlock* blocks, int count);
 
 }  // namespace internal
 }  // namespace splitfusion
