@@ -109,6 +109,20 @@ SPLITFUSION_INLINE void SeeRow(const FusionView& view,
   row->changes = Pack::Less(reach, sdf);
 }
 
+/// Where space is free for sure: the truncation and kFreeSpaceSigmas of
+/// splitfusion::DepthSigma(), its square multiplied out.
+template <typename Pack>
+SPLITFUSION_INLINE typename Pack::Real FreeFrom(
+    const FusionView& view, const typename Pack::Real& depth) {
+  constexpr double kSquare = kFreeSpaceSigmas * kDepthSigmaGrowth;
+  constexpr double kConstant =
+      kFreeSpaceSigmas * kLeastDepthSigma + kSquare * kBestDepth * kBestDepth;
+  constexpr double kLinear = -2 * kSquare * kBestDepth;
+  return (static_cast<float>(kSquare) * depth + static_cast<float>(kLinear)) *
+             depth +
+         (view.truncation + static_cast<float>(kConstant));
+}
+
 /// Fuses what is seen into voxels that are side by side in memory, from `leaf`
 /// on. Leaves bits in `changed` where a mesh may show it.
 template <typename Pack>
@@ -124,12 +138,7 @@ SPLITFUSION_INLINE void FuseRow(const FusionView& view,
   Real old_distance, old_weight;
   std::memcpy(&old_distance, leaf.distance, sizeof(Real));
   std::memcpy(&old_weight, leaf.weight, sizeof(Real));
-  // splitfusion::DepthSigma(), and where it makes sure that space is free.
-  const Real d = row.depth - static_cast<float>(kBestDepth);
-  const Real sigma = static_cast<float>(kLeastDepthSigma) +
-                     static_cast<float>(kDepthSigmaGrowth) * d * d;
-  const Mask free_space =
-      Pack::Less(truncation + kFreeSpaceSigmas * sigma, sdf);
+  const Mask free_space = Pack::Less(FreeFrom<Pack>(view, row.depth), sdf);
   const Real seen_weight = Pack::FromBits(Pack::Bits(row.weight) & INT32_MAX);
   const Real confidence =
       Pack::Select(free_space, Real{} + kFreeSpaceWeight, seen_weight);

@@ -14,6 +14,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr FusionPixel kNoPixel = {-kInfinity, 0};
+constexpr auto kWrites = static_cast<std::uint8_t>(PixelRole::kWrite);
+constexpr auto kCarves = static_cast<std::uint8_t>(PixelRole::kCarve);
 
 /// The nearest packed colour.
 std::int32_t PackBytes(const cv::Vec3b& bgr) {
@@ -62,15 +64,14 @@ void FusionImage::FillRow(const DepthObservation& observation, int v) {
   FusionPixel* pixels = &pixels_[static_cast<std::size_t>(v) * view_.width];
   float* reach = &reach_[static_cast<std::size_t>(v / kTile) * columns_];
   for (int u = 0; u < view_.width; ++u) {
-    const auto pixel_role = static_cast<PixelRole>(role[u]);
-    if (pixel_role == PixelRole::kNone || !(depth[u] > 0)) {
-      pixels[u] = kNoPixel;
-      continue;
-    }
-    const bool writes = pixel_role == PixelRole::kWrite;
-    pixels[u] = {depth[u], writes ? weight[u] : -weight[u]};
-    reach[u / kTile] = std::max(
-        reach[u / kTile], depth[u] + (writes ? truncation_ : -truncation_));
+    const bool writes = role[u] == kWrites;
+    const bool counts = (writes || role[u] == kCarves) && depth[u] > 0;
+    pixels[u] = {counts ? depth[u] : -kInfinity,
+                 counts ? (writes ? weight[u] : -weight[u]) : 0};
+    // Of a pixel that says nothing: - infinity.
+    const float reaches =
+        pixels[u].depth + (writes ? truncation_ : -truncation_);
+    reach[u / kTile] = std::max(reach[u / kTile], reaches);
   }
   if (color_ == nullptr) return;
   const cv::Vec3b* bgr = observation.color.ptr<cv::Vec3b>(v);

@@ -10,12 +10,14 @@ namespace {
 
 using Points = SeenVoxels<EightLanes>;
 
-SPLITFUSION_INLINE float LowestOf(const Lanes& numbers) {
-  float lowest = numbers[0];
-  for (int i = 1; i < EightLanes::kCount; ++i) {
-    lowest = numbers[i] < lowest ? numbers[i] : lowest;
+SPLITFUSION_INLINE float LowestOf(Lanes numbers) {
+  constexpr Flags kPartners[] = {{4, 5, 6, 7, 0, 1, 2, 3},
+                                 {2, 3, 0, 1, 6, 7, 4, 5},
+                                 {1, 0, 3, 2, 5, 4, 7, 6}};
+  for (const Flags& partner : kPartners) {
+    numbers = EightLanes::Lower(numbers, __builtin_shuffle(numbers, partner));
   }
-  return lowest;
+  return numbers[0];
 }
 
 /// Box around `count` times eight points.

@@ -2,16 +2,21 @@
 
 #include "splitfusion/lib/tsdf/internal/wide_fusion.h"
 
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+
 #include <immintrin.h>
 
 #include <cstdint>
 #include <cstring>
 
+#include "splitfusion/lib/base/vector_clones.h"
+#include "splitfusion/lib/geometry/depth_noise.h"
+
 // What has been included is for any processor, what follows for these alone:
 // no function of it is called from elsewhere.
 #pragma GCC push_options
 #pragma GCC target("arch=x86-64-v4")
-// Of the compiler's own headers: GCC bug 105593.
+// Of the compiler's own header: GCC bug 105593.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
 
@@ -27,7 +32,13 @@ void FuseRigidWide(const FusionView& view, const float steps[3][3],
   FuseRigid<SixteenLanes>(local, steps, blocks, count);
 }
 
+}  // namespace internal
+}  // namespace splitfusion
+
 #pragma GCC pop_options
+
+namespace splitfusion {
+namespace internal {
 
 bool HasWideLanes() {
   return __builtin_cpu_supports("avx512f") &&
@@ -38,3 +49,20 @@ bool HasWideLanes() {
 
 }  // namespace internal
 }  // namespace splitfusion
+
+#else
+
+namespace splitfusion {
+namespace internal {
+
+bool HasWideLanes() { return false; }
+
+void FuseRigidWide(const FusionView& view, const float steps[3][3],
+                   RigidBlock* blocks, int count) {
+  FuseRigidNarrow(view, steps, blocks, count);
+}
+
+}  // namespace internal
+}  // namespace splitfusion
+
+#endif

@@ -13,6 +13,10 @@ bool HasWideLanes();
 void FuseRigidWide(const FusionView& view, const float steps[3][3],
                    RigidBlock* blocks, int count);
 
+/// The same eight voxels at a time, on any processor.
+void FuseRigidNarrow(const FusionView& view, const float steps[3][3],
+                     RigidBlock* blocks, int count);
+
 }  // namespace internal
 }  // namespace splitfusion
 
