@@ -22,7 +22,7 @@ struct TsdfOptions {
   /// The same where space was found empty: how long something that comes back
   /// takes to be believed.
   double max_free_weight = 64;
-  /// False: distances alone. Takes two fifths of the memory; meshes are black.
+  /// False: distances alone. Takes two thirds of the memory; meshes are black.
   bool has_color = true;
 
   /// @throw InputError if a value is out of its range.
@@ -54,7 +54,8 @@ struct DepthObservation {
 
 /// Truncated signed distance of one surface in its canonical frame, with
 /// weight and colour, in OpenVDB grids (SplitFusion IV-D). Distances are
-/// positive in front of the surface, in metres.
+/// positive in front of the surface, in metres. Colours have ten bits a channel
+/// in memory.
 class TsdfVolume {
  public:
   /// An empty volume. @throw InputError if an option is out of range.

@@ -31,6 +31,18 @@ void RigidFloor(benchmark::State& state) {
   state.counters["voxels"] = static_cast<double>(voxels);
 }
 
+void RigidPlainLoop(benchmark::State& state) {
+  const TwoThreads threads;
+  RoomModel& room = FineRoom(/*has_color=*/false);
+  const auto touched = TouchedLeaves(&room.volume, [&] { Integrate(&room); });
+  std::size_t voxels = 0;
+  for (auto _ : state) {
+    voxels = FusePlainly(touched, room.observation, room.camera_from_canonical,
+                         room.volume.options());
+  }
+  state.counters["voxels"] = static_cast<double>(voxels);
+}
+
 void Allocate(benchmark::State& state) {
   const TwoThreads threads;
   RoomModel& room = FineRoom(/*has_color=*/true);
@@ -69,6 +81,7 @@ BENCHMARK_CAPTURE(RigidRow, integrate_rigid, /*has_color=*/false)
     ->Name("integrate_rigid")
     ->UseRealTime();
 BENCHMARK(RigidFloor)->Name("integrate_rigid/floor")->UseRealTime();
+BENCHMARK(RigidPlainLoop)->Name("integrate_rigid/plain_loop")->UseRealTime();
 BENCHMARK_CAPTURE(RigidRow, integrate_rigid_color, /*has_color=*/true)
     ->Name("integrate_rigid_color")
     ->UseRealTime();

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "splitfusion/lib/base/vector_clones.h"
@@ -19,6 +20,43 @@ void AddToLeaf(float* __restrict distance, float* __restrict weight) {
   for (int i = 0; i < kLeafVoxels; ++i) {
     distance[i] += 1e-9f;
     weight[i] += 1e-9f;
+  }
+}
+
+/// What plain fusion has to know.
+struct PlainView {
+  const float* depth;  // Row by row, metres, 0 = none.
+  int width, height;
+  float fx, fy, cx, cy;
+  float truncation, max_weight;
+  Eigen::Vector3f steps[3];  // From a voxel to the next along an axis.
+};
+
+/// A voxel's depth minus its own, or a number below minus the truncation.
+inline float PlainDistance(const PlainView& view, float x, float y, float z) {
+  const float inverse_z = 1 / z;
+  const int u = static_cast<int>(view.fx * x * inverse_z + view.cx + 0.5f);
+  const int v = static_cast<int>(view.fy * y * inverse_z + view.cy + 0.5f);
+  const bool is_seen =
+      z > 0 && u >= 0 && v >= 0 && u < view.width && v < view.height;
+  const float depth = is_seen ? view.depth[v * view.width + u] : 0;
+  return depth > 0 ? depth - z : -2 * view.truncation;
+}
+
+void FuseLeafPlainly(const PlainView& view, const Eigen::Vector3f& base,
+                     const LeafBuffers& leaf) {
+  for (int i = 0; i < kLeafVoxels; ++i) {
+    const Eigen::Vector3f p = base +
+                              static_cast<float>(i / 64) * view.steps[0] +
+                              static_cast<float>(i / 8 % 8) * view.steps[1] +
+                              static_cast<float>(i % 8) * view.steps[2];
+    const float sdf = PlainDistance(view, p.x(), p.y(), p.z());
+    if (sdf < -view.truncation) continue;
+    float& weight = leaf.weight[i];
+    float& distance = leaf.distance[i];
+    distance =
+        (weight * distance + std::min(sdf, view.truncation)) / (weight + 1);
+    weight = std::min(weight + 1, view.max_weight);
   }
 }
 
@@ -109,6 +147,36 @@ std::vector<LeafBuffers> TouchedLeaves(TsdfVolume* volume,
 std::size_t StreamVoxels(const std::vector<LeafBuffers>& leaves) {
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     AddToLeaf(leaves[i].distance, leaves[i].weight);
+  });
+  return leaves.size() * kLeafVoxels;
+}
+
+std::size_t FusePlainly(const std::vector<LeafBuffers>& leaves,
+                        const DepthObservation& observation,
+                        const Rigid3d& camera_from_canonical,
+                        const TsdfOptions& options) {
+  const PinholeCamera& camera = observation.camera;
+  const Rigid3f motion = camera_from_canonical.cast<float>();
+  const auto voxel = static_cast<float>(options.voxel_size);
+  PlainView view = {observation.depth[0],
+                    camera.width,
+                    camera.height,
+                    static_cast<float>(camera.fx),
+                    static_cast<float>(camera.fy),
+                    static_cast<float>(camera.cx),
+                    static_cast<float>(camera.cy),
+                    static_cast<float>(options.truncation),
+                    static_cast<float>(options.max_weight),
+                    {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    view.steps[axis] = voxel * motion.linear().col(axis);
+  }
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
+    const openvdb::Coord& origin = leaves[i].origin;
+    const Eigen::Vector3f corner(static_cast<float>(origin.x()),
+                                 static_cast<float>(origin.y()),
+                                 static_cast<float>(origin.z()));
+    FuseLeafPlainly(view, motion * (voxel * corner), leaves[i]);
   });
   return leaves.size() * kLeafVoxels;
 }

@@ -18,6 +18,14 @@ std::vector<internal::LeafBuffers> TouchedLeaves(
 /// one addition each. Returns the number of voxels.
 std::size_t StreamVoxels(const std::vector<internal::LeafBuffers>& leaves);
 
+/// Projective fusion as one first writes it, in parallel: distance and weight
+/// of every voxel, each pixel counting as 1, nothing passed over, no carving of
+/// other surfaces' space. Returns the number of voxels.
+std::size_t FusePlainly(const std::vector<internal::LeafBuffers>& leaves,
+                        const DepthObservation& observation,
+                        const Rigid3d& camera_from_canonical,
+                        const TsdfOptions& options);
+
 /// Reads distance and weight of every voxel once, in parallel; their sum.
 float SumVoxels(const std::vector<internal::LeafBuffers>& leaves);
 

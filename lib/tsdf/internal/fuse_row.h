@@ -41,19 +41,15 @@ SPLITFUSION_INLINE typename Pack::Whole PixelsOf(const FusionView& view,
   // Added to a number, it leaves the nearest integer in the lowest bits.
   constexpr float kRounding = 12582912.0f;  // 1.5 * 2^23
   const Real inverse_z = 1 / at.z;
-  std::int32_t zero;
-  std::memcpy(&zero, &kRounding, sizeof(zero));
-  const Whole u = Pack::Bits(at.zu * inverse_z + kRounding);
-  const Whole v = Pack::Bits(at.zv * inverse_z + kRounding);
-  // Unsigned: both lines may wrap.
-  const std::uint32_t width = view.width;
-  const Whole pixel =
-      v * view.width + u - static_cast<std::int32_t>(zero * (width + 1));
+  const Whole zero = Pack::Bits(Real{} + kRounding);
+  const Whole u = Pack::Bits(at.zu * inverse_z + kRounding) - zero;
+  const Whole v = Pack::Bits(at.zv * inverse_z + kRounding) - zero;
+  const Whole pixel = v * view.width + u;
   if (kAllInside) return pixel;
   const typename Pack::Mask inside =
       Pack::Less(Real{} + kNear, at.z) &
-      Pack::Within(u - zero, Whole{} + view.width) &
-      Pack::Within(v - zero, Whole{} + view.height);
+      Pack::Within(u, Whole{} + view.width) &
+      Pack::Within(v, Whole{} + view.height);
   return Pack::Select(inside, pixel, Whole{} + view.width * view.height);
 }
 
