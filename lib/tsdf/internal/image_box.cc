@@ -10,14 +10,15 @@ namespace {
 
 using Points = SeenVoxels<EightLanes>;
 
-SPLITFUSION_INLINE float LowestOf(Lanes numbers) {
+SPLITFUSION_INLINE float LowestOf(const Lanes& numbers) {
+  Lanes lowest = numbers;
   constexpr Flags kPartners[] = {{4, 5, 6, 7, 0, 1, 2, 3},
                                  {2, 3, 0, 1, 6, 7, 4, 5},
                                  {1, 0, 3, 2, 5, 4, 7, 6}};
   for (const Flags& partner : kPartners) {
-    numbers = EightLanes::Lower(numbers, __builtin_shuffle(numbers, partner));
+    lowest = EightLanes::Lower(lowest, __builtin_shuffle(lowest, partner));
   }
-  return numbers[0];
+  return lowest[0];
 }
 
 /// Box around `count` times eight points.
