@@ -161,7 +161,7 @@ class Refiner {
 struct Cast {
   internal::RayVolume volume;
   std::vector<LeafPlace> places;              // Of the blocks with surface.
-  std::vector<const std::int32_t*> color;   // By block number.
+  std::vector<const std::int32_t*> color;     // By block number.
   std::vector<float> no_distance, no_weight;  // Of the block that is not there.
 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/floor_to_int.h"
+#include "splitfusion/lib/tsdf/check_observation.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
@@ -76,6 +77,7 @@ std::vector<openvdb::Coord> MissingInRow(const DepthObservation& observation,
 
 void AllocateBand(const DepthObservation& observation,
                   const Rigid3d& camera_from_canonical, TsdfVolume* volume) {
+  CheckObservation(observation, volume->options());
   const Rigid3d canonical_from_camera = camera_from_canonical.inverse();
   const int rows = (observation.depth.rows + kPixelStride - 1) / kPixelStride;
   std::vector<std::vector<openvdb::Coord>> found(rows);

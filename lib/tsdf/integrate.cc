@@ -77,9 +77,9 @@ void IntegrateRigid(const DepthObservation& observation,
                     const Rigid3d& camera_from_canonical, TsdfVolume* volume) {
   CheckObservation(observation, volume->options());
   TsdfVolume::Grids& grids = volume->grids();
-  const internal::FusionImage image(observation, volume->options());
   const RigidMotion motion(camera_from_canonical, volume->options().voxel_size);
   ++grids.time;
+  const internal::FusionImage image(observation, volume->options(), grids.time);
   constexpr std::size_t kBatch = 16;  // Blocks.
   const std::size_t batches = (grids.leaves.size() + kBatch - 1) / kBatch;
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {

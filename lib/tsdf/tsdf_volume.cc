@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <new>
+#include <stdexcept>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
@@ -213,8 +215,9 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
     options.has_color =
         grids.distance->getMetadata<openvdb::BoolMetadata>(kNoColor) == nullptr;
     if (options.has_color) {
-      grids.color = Convert<openvdb::Int32Grid>(
-          *FindGrid<openvdb::Vec3SGrid>(*all, "color", path), Pack);
+      const auto color = FindGrid<openvdb::Vec3SGrid>(*all, "color", path);
+      color->tree().voxelizeActiveTiles();  // Others prune.
+      grids.color = Convert<openvdb::Int32Grid>(*color, Pack);
     }
     options.voxel_size = grids.distance->voxelSize()[0];
     options.truncation = grids.distance->metaValue<double>("truncation");
@@ -227,6 +230,10 @@ TsdfVolume TsdfVolume::Read(const std::string& path) {
     throw InputError(path + ": not a readable volume (it ends early)");
   } catch (const openvdb::Exception& e) {
     throw InputError(path + ": not a readable volume (" + e.what() + ")");
+  } catch (const std::bad_alloc&) {
+    throw InputError(path + ": not a readable volume (absurd sizes)");
+  } catch (const std::length_error&) {
+    throw InputError(path + ": not a readable volume (absurd sizes)");
   }
 }
 

@@ -98,6 +98,8 @@ class TsdfVolume {
 
 /// Allocates the blocks within the truncation band of the writing pixels, for
 /// a surface whose canonical frame is carried rigidly.
+///
+/// @throw InputError if an image is missing or of a wrong size.
 void AllocateBand(const DepthObservation& observation,
                   const Rigid3d& camera_from_canonical, TsdfVolume* volume);
 
@@ -108,6 +110,8 @@ void AllocateAround(const std::vector<Eigen::Vector3d>& points, double radius,
 /// Fuses one observation into the allocated blocks of a rigid surface, block by
 /// block in parallel: projective distance, running weighted mean, free-space
 /// carving. Kinect Fusion's update, SplitFusion IV-D.
+///
+/// @throw InputError if an image is missing or of a wrong size.
 void IntegrateRigid(const DepthObservation& observation,
                     const Rigid3d& camera_from_canonical, TsdfVolume* volume);
 

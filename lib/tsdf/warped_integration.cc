@@ -257,7 +257,8 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
   CheckObservation(observation, volume->options());
   TsdfVolume::Grids& grids = volume->grids();
   const std::vector<internal::LeafBuffers>& leaves = grids.leaves;
-  const internal::FusionImage image(observation, volume->options());
+  ++grids.time;
+  const internal::FusionImage image(observation, volume->options(), grids.time);
   const float voxel = static_cast<float>(volume->options().voxel_size);
   std::deque<LeafLattice>& lattices = cache_->lattices;
   lattices.resize(leaves.size());
@@ -279,7 +280,6 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     own[i] = WarpOwn(leaves[i].origin, voxel, lattices[i], warp);
   });
-  ++grids.time;
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     if (!lattices[i].attached) return;
     const WarpedLattice warped = GatherLattice(

@@ -38,22 +38,24 @@ SPLITFUSION_INLINE typename Pack::Whole PixelsOf(const FusionView& view,
                                                  const SeenVoxels<Pack>& at) {
   using Real = typename Pack::Real;
   using Whole = typename Pack::Whole;
+  using Wrapping = typename Pack::Wrapping;  // Outside of the image.
   // Added to a number, it leaves the nearest integer in the lowest bits.
   constexpr float kRounding = 12582912.0f;  // 1.5 * 2^23
   const Real inverse_z = 1 / at.z;
-  const Whole zero = Pack::Bits(Real{} + kRounding);
-  const Whole u = Pack::Bits(at.zu * inverse_z + kRounding) - zero;
-  const Whole v = Pack::Bits(at.zv * inverse_z + kRounding) - zero;
-  const Whole pixel = v * view.width + u;
+  const auto zero = (Wrapping)Pack::Bits(Real{} + kRounding);
+  const Wrapping u = (Wrapping)Pack::Bits(at.zu * inverse_z + kRounding) - zero;
+  const Wrapping v = (Wrapping)Pack::Bits(at.zv * inverse_z + kRounding) - zero;
+  const auto pixel = (Whole)(v * static_cast<std::uint32_t>(view.width) + u);
   if (kAllInside) return pixel;
   const typename Pack::Mask inside =
       Pack::Less(Real{} + kNear, at.z) &
-      Pack::Within(u, Whole{} + view.width) &
-      Pack::Within(v, Whole{} + view.height);
+      Pack::Within((Whole)u, Whole{} + view.width) &
+      Pack::Within((Whole)v, Whole{} + view.height);
   return Pack::Select(inside, pixel, Whole{} + view.width * view.height);
 }
 
-/// Running means of colours, by channels.
+/// Running means of colours, by channels. They are rounded up as often as they
+/// are close to the upper value: else a small difference would never move them.
 template <typename Pack>
 SPLITFUSION_INLINE void BlendColors(const FusionView& view,
                                     const std::int32_t pixel[Pack::kCount],
@@ -64,6 +66,8 @@ SPLITFUSION_INLINE void BlendColors(const FusionView& view,
   using Real = typename Pack::Real;
   using Whole = typename Pack::Whole;
   const Whole seen = Pack::Gather(view.color, pixel);
+  Real dither;
+  std::memcpy(&dither, view.dither, sizeof(dither));
   Whole before, after = {};
   std::memcpy(&before, color, sizeof(before));
   for (int shift = 0; shift < 3 * kChannelBits; shift += kChannelBits) {
@@ -71,7 +75,7 @@ SPLITFUSION_INLINE void BlendColors(const FusionView& view,
         __builtin_convertvector(before >> shift & kChannelEnd, Real);
     const Real sample =
         __builtin_convertvector(seen >> shift & kChannelEnd, Real);
-    const Real next = mean + blend * (sample - mean) + 0.5f;
+    const Real next = mean + blend * (sample - mean) + dither;
     after |= __builtin_convertvector(next, Whole) << shift;
   }
   after = Pack::Select(colored, after, before);
@@ -140,17 +144,17 @@ SPLITFUSION_INLINE void FuseRow(const FusionView& view,
       Pack::Select(free_space, Real{} + kFreeSpaceWeight, seen_weight);
   const Real sum = old_weight + confidence;
   // Nothing and nothing is nothing.
-  const Real blend = confidence / Pack::Higher(sum, Real{} + 1e-30f);
+  const Real blend = confidence / Pack::Max(sum, Real{} + 1e-30f);
   Real distance =
-      old_distance + blend * (Pack::Lower(truncation, sdf) - old_distance);
+      old_distance + blend * (Pack::Min(truncation, sdf) - old_distance);
   const Mask emptied = free_space & Pack::Less(0.9f * truncation, distance);
   const Real cap = Pack::Select(emptied, Real{} + view.max_free_weight,
                                 Real{} + view.max_weight);
   distance = Pack::Select(row.changes, distance, old_distance);
   const Real weight =
-      Pack::Select(row.changes, Pack::Lower(cap, sum), old_weight);
+      Pack::Select(row.changes, Pack::Min(cap, sum), old_weight);
   const Mask soft =
-      Pack::Less(Pack::Lower(weight, old_weight), Real{} + kFirmWeight);
+      Pack::Less(Pack::Min(weight, old_weight), Real{} + kFirmWeight);
   *changed |= Pack::Bits(distance) ^ Pack::Bits(old_distance);
   *changed |= Pack::Select(soft, Pack::Bits(weight) ^ Pack::Bits(old_weight),
                            typename Pack::Whole{});

@@ -17,6 +17,14 @@ constexpr FusionPixel kNoPixel = {-kInfinity, 0};
 constexpr auto kWrites = static_cast<std::uint8_t>(PixelRole::kWrite);
 constexpr auto kCarves = static_cast<std::uint8_t>(PixelRole::kCarve);
 
+/// Multiples of the golden section are spread evenly over 0..1, those of one
+/// voxel over time as well as those of neighbours.
+float Dither(int time, int z) {
+  constexpr double kGolden = 0.6180339887498949;
+  const double phase = kGolden * (static_cast<double>(time) + 3 * z);
+  return static_cast<float>(std::min(phase - std::floor(phase), 0.999));
+}
+
 /// The nearest packed colour.
 std::int32_t PackBytes(const cv::Vec3b& bgr) {
   return PackColor(ChannelFromByte(bgr[2]), ChannelFromByte(bgr[1]),
@@ -26,7 +34,7 @@ std::int32_t PackBytes(const cv::Vec3b& bgr) {
 }  // namespace
 
 FusionImage::FusionImage(const DepthObservation& observation,
-                         const TsdfOptions& options)
+                         const TsdfOptions& options, int time)
     : truncation_(static_cast<float>(options.truncation)),
       columns_((observation.camera.width + kTile - 1) / kTile),
       rows_((observation.camera.height + kTile - 1) / kTile) {
@@ -48,9 +56,11 @@ FusionImage::FusionImage(const DepthObservation& observation,
            static_cast<float>(camera.fy),
            static_cast<float>(camera.cx),
            static_cast<float>(camera.cy),
+           {},
            truncation_,
            static_cast<float>(options.max_weight),
            static_cast<float>(options.max_free_weight)};
+  for (int i = 0; i < 16; ++i) view_.dither[i] = Dither(time, i % 8);
   tbb::parallel_for(0, rows_, [&](int tile_row) {
     const int end = std::min(camera.height, (tile_row + 1) * kTile);
     for (int v = tile_row * kTile; v < end; ++v) FillRow(observation, v);

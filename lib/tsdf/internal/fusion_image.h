@@ -16,14 +16,15 @@ namespace internal {
 /// of the image how far from the camera it can change anything.
 class FusionImage {
  public:
-  /// Keeps hold of nothing of the observation.
-  FusionImage(const DepthObservation& observation, const TsdfOptions& options);
+  /// Keeps hold of nothing of the observation; `time`: the integration's.
+  FusionImage(const DepthObservation& observation, const TsdfOptions& options,
+              int time);
   /// The view points into it.
   FusionImage(const FusionImage&) = delete;
   /// The view points into it.
   FusionImage& operator=(const FusionImage&) = delete;
 
-  /// For FuseRigidLeaf() and FuseWarpedLeaf().
+  /// For FuseRigidBlocks() and FuseWarpedLeaf().
   const FusionView& view() const { return view_; }
 
   /// What of the voxels within a box can be changed: rather too much than not

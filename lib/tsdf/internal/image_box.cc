@@ -16,7 +16,7 @@ SPLITFUSION_INLINE float LowestOf(const Lanes& numbers) {
                                  {2, 3, 0, 1, 6, 7, 4, 5},
                                  {1, 0, 3, 2, 5, 4, 7, 6}};
   for (const Flags& partner : kPartners) {
-    lowest = EightLanes::Lower(lowest, __builtin_shuffle(lowest, partner));
+    lowest = EightLanes::Min(lowest, __builtin_shuffle(lowest, partner));
   }
   return lowest[0];
 }
@@ -30,11 +30,11 @@ SPLITFUSION_INLINE ImageBox BoundPoints(const Points* points, int count) {
     const Lanes inverse_z = 1 / points[i].z;
     const Lanes u = points[i].zu * inverse_z;
     const Lanes v = points[i].zv * inverse_z;
-    z_low = EightLanes::Lower(points[i].z, z_low);
-    u_low = EightLanes::Lower(u, u_low);
-    v_low = EightLanes::Lower(v, v_low);
-    minus_u_low = EightLanes::Lower(-u, minus_u_low);
-    minus_v_low = EightLanes::Lower(-v, minus_v_low);
+    z_low = EightLanes::Min(points[i].z, z_low);
+    u_low = EightLanes::Min(u, u_low);
+    v_low = EightLanes::Min(v, v_low);
+    minus_u_low = EightLanes::Min(-u, minus_u_low);
+    minus_v_low = EightLanes::Min(-v, minus_v_low);
   }
   ImageBox box;
   box.z_low = LowestOf(z_low);

@@ -25,6 +25,9 @@ struct EightLanes {
   using Real = Lanes;               ///< As many numbers.
   using Whole = Flags;              ///< As many integers.
   using Mask = Flags;               ///< As many conditions.
+  /// As many integers that may wrap.
+  using Wrapping =
+      std::uint32_t __attribute__((vector_size(sizeof(std::uint32_t) * 8)));
 
   /// a < b.
   static SPLITFUSION_INLINE Flags Less(const Lanes& a, const Lanes& b) {
@@ -49,12 +52,12 @@ struct EightLanes {
   }
 
   /// The lower of both.
-  static SPLITFUSION_INLINE Lanes Lower(const Lanes& a, const Lanes& b) {
+  static SPLITFUSION_INLINE Lanes Min(const Lanes& a, const Lanes& b) {
     return a < b ? a : b;
   }
 
   /// The higher of both.
-  static SPLITFUSION_INLINE Lanes Higher(const Lanes& a, const Lanes& b) {
+  static SPLITFUSION_INLINE Lanes Max(const Lanes& a, const Lanes& b) {
     return b < a ? a : b;
   }
 

@@ -6,8 +6,8 @@
 namespace splitfusion {
 namespace internal {
 
-/// Bits of a channel: a third of the memory of floats, and fine enough for
-/// running means whose samples have eight.
+/// Bits of a channel: a third of the memory of floats, and with dithering fine
+/// enough for running means whose samples have eight.
 constexpr int kChannelBits = 10;
 /// The brightest value of a channel; the darkest is 0.
 constexpr int kChannelEnd = (1 << kChannelBits) - 1;
@@ -29,9 +29,11 @@ constexpr std::uint8_t ByteOf(std::int32_t color, int channel) {
       (ChannelOf(color, channel) * 255 + kChannelEnd / 2) / kChannelEnd);
 }
 
-/// Channel of a colour of 256 values a channel: 0..kChannelEnd.
+/// Channel of a colour of 256 values a channel: 0..kChannelEnd, the nearest one
+/// or its neighbour; ByteOf() gives the byte back.
 constexpr int ChannelFromByte(int byte) {
-  return (byte * kChannelEnd + 127) / 255;
+  static_assert(kChannelBits == 10);
+  return byte << 2 | byte >> 6;
 }
 
 }  // namespace internal

@@ -19,6 +19,9 @@ struct FusionView {
   const std::int32_t* color;
   int width, height;
   float fx, fy, cx, cy;
+  /// What is added before colours are cut to integers, by z, twice; 0..1, and
+  /// different in every integration.
+  float dither[16];
   float truncation;  ///< Metres.
   float max_weight, max_free_weight;
 };
@@ -37,7 +40,7 @@ constexpr float kFirmWeight = 8;
 /// What of a block may change.
 struct FusedPart {
   float farthest;  ///< Nothing that is farther away: z-depth, metres.
-  bool in_image;   ///< All of its voxels are seen.
+  bool in_image;   ///< All of its voxels fall into the image.
 };
 
 /// A block that is carried rigidly, whose voxel (x, y, z) is at

@@ -40,12 +40,7 @@ void FuseRigidWide(const FusionView& view, const float steps[3][3],
 namespace splitfusion {
 namespace internal {
 
-bool HasWideLanes() {
-  return __builtin_cpu_supports("avx512f") &&
-         __builtin_cpu_supports("avx512bw") &&
-         __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512vl");
-}
+bool HasWideLanes() { return __builtin_cpu_supports("x86-64-v4"); }
 
 }  // namespace internal
 }  // namespace splitfusion

@@ -20,6 +20,9 @@ struct SixteenLanes {
   using Real = WideLanes;            ///< As many numbers.
   using Whole = WideFlags;           ///< As many integers.
   using Mask = __mmask16;            ///< As many conditions.
+  /// As many integers that may wrap.
+  using Wrapping =
+      std::uint32_t __attribute__((vector_size(sizeof(std::uint32_t) * 16)));
 
   /// a < b.
   static SPLITFUSION_INLINE __mmask16 Less(const WideLanes& a,
@@ -46,14 +49,14 @@ struct SixteenLanes {
   }
 
   /// The lower of both.
-  static SPLITFUSION_INLINE WideLanes Lower(const WideLanes& a,
-                                            const WideLanes& b) {
+  static SPLITFUSION_INLINE WideLanes Min(const WideLanes& a,
+                                          const WideLanes& b) {
     return _mm512_min_ps(a, b);
   }
 
   /// The higher of both.
-  static SPLITFUSION_INLINE WideLanes Higher(const WideLanes& a,
-                                             const WideLanes& b) {
+  static SPLITFUSION_INLINE WideLanes Max(const WideLanes& a,
+                                          const WideLanes& b) {
     return _mm512_max_ps(a, b);
   }
 
@@ -79,10 +82,10 @@ struct SixteenLanes {
   static SPLITFUSION_INLINE __m512
   GatherEightPairs(const float (*pairs)[2], const std::int32_t index[8]) {
     const auto two = [&](int i) {
-      const __m128d low =
-          _mm_load_sd(reinterpret_cast<const double*>(pairs[index[i]]));
-      return _mm_loadh_pd(low,
-                          reinterpret_cast<const double*>(pairs[index[i + 1]]));
+      double pair[2];
+      std::memcpy(&pair[0], pairs[index[i]], sizeof(double));
+      std::memcpy(&pair[1], pairs[index[i + 1]], sizeof(double));
+      return _mm_set_pd(pair[1], pair[0]);
     };
     const __m256d low =
         _mm256_insertf128_pd(_mm256_castpd128_pd256(two(0)), two(2), 1);
