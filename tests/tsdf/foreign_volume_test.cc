@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "splitfusion/lib/tsdf/internal/grids.h"
+#include "splitfusion/lib/tsdf/internal/packed_color.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 #include "support/expect_input_error.h"
 #include "support/temporary_folder.h"
@@ -73,6 +75,32 @@ TEST(ForeignVolume, WhatAnotherProgramDidNotObserveIsNoSurface) {
       ExtractMesh(TsdfVolume::Read(foreign.Write(folder / "voxel.vdb")), 0.5);
   EXPECT_EQ(mesh.vertices.size(), 8u);
   EXPECT_EQ(mesh.triangles.size(), 12u);
+}
+
+TEST(ForeignVolume, BlocksOfOneColorMayBePruned) {
+  const TemporaryFolder folder;
+  TsdfOptions options;
+  options.voxel_size = kVoxel;
+  TsdfVolume volume(options);
+  volume.grids().Touch(openvdb::Coord(8, 0, 0));
+  volume.Write(folder / "volume.vdb");
+  openvdb::io::File file(folder / "volume.vdb");
+  file.open();
+  const openvdb::GridPtrVecPtr grids = file.getGrids();
+  file.close();
+  const auto color = openvdb::gridPtrCast<openvdb::Vec3SGrid>(
+      openvdb::findGridByName(*grids, "color"));
+  color->tree().fill(openvdb::CoordBBox::createCube(openvdb::Coord(8, 0, 0), 8),
+                     openvdb::Vec3s(1, 0, 0.5f));
+  color->pruneGrid();
+  EXPECT_EQ(color->tree().leafCount(), 0u);
+  openvdb::io::File(folder / "pruned.vdb").write(*grids);
+  const TsdfVolume pruned = TsdfVolume::Read(folder / "pruned.vdb");
+  const std::int32_t packed =
+      pruned.grids().color->tree().getValue(openvdb::Coord(9, 1, 1));
+  EXPECT_EQ(internal::ByteOf(packed, 0), 255);
+  EXPECT_EQ(internal::ByteOf(packed, 1), 0);
+  EXPECT_NEAR(internal::ByteOf(packed, 2), 128, 1);
 }
 
 TEST(ForeignVolume, VolumesThatFusionCouldNotHaveMadeAreRefused) {
