@@ -300,6 +300,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   const std::map<int, int> pixels = PixelsOfSurfaces(live_);
   const Rigid3d world_from_camera = WorldFromCamera();
   trajectory_.push_back({frame.timestamp, world_from_camera});
+  recent_views_.Add(frame.index, live_);
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
     const auto found = surfaces_.find(id);
@@ -316,8 +317,8 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
     surface_report.node_spacing = surface.graph().node_spacing;
     surface_report.vertices = static_cast<int>(surface.mesh().vertices.size());
     const bool tracked = surface_report.state == "tracked";
-    surface.RecordMotions(frame.index,
-                          tracked || surface_report.state == "born");
+    surface.RecordMotions(
+        frame.index, tracked || surface_report.state == "born", recent_views_);
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
     const bool hidden = hidden_.count(id) > 0 && !surface.dormant();

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "splitfusion/lib/association/canonical_places.h"
@@ -174,8 +175,25 @@ void Surface::GrowOverMesh() {
   AllocateAroundNodes(before);
 }
 
-void Surface::RecordMotions(int frame, bool tracked) {
+void Surface::RecordMotions(int frame, bool tracked, const RecentViews& views) {
   history_.frames.push_back({frame, tracked, graph_.motions});
+  while (static_cast<int>(graph_.first_seen.size()) < graph_.size()) {
+    graph_.first_seen.push_back(
+        FirstSeen(static_cast<int>(graph_.first_seen.size()), views));
+  }
+}
+
+int Surface::FirstSeen(int node, const RecentViews& views) const {
+  int first = history_.frames.back().frame;
+  for (auto motions = history_.frames.rbegin();
+       motions != history_.frames.rend(); ++motions) {
+    const std::optional<Sighting> sighting =
+        views.Look(motions->frame, id_,
+                   graph_.positions[node] + motions->motions[node].translation);
+    if (!sighting || *sighting == Sighting::kFreeSpace) break;
+    if (*sighting == Sighting::kSeen) first = motions->frame;
+  }
+  return first;
 }
 
 std::vector<Eigen::Vector3f> Surface::WarpedVertices() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "splitfusion/lib/association/live_view.h"
+#include "splitfusion/lib/association/recent_views.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
 #include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/motion_history.h"
@@ -67,8 +68,9 @@ class Surface {
   /// Extracts the final canonical mesh, without small pieces.
   void FinishMesh();
 
-  /// Appends the current motions to the history.
-  void RecordMotions(int frame, bool tracked);
+  /// Appends the current motions to the history. `views`, with this frame the
+  /// last one, tell since when the nodes that are new in it have been in view.
+  void RecordMotions(int frame, bool tracked, const RecentViews& views = {});
 
   /// Mesh vertices under the current motions, camera frame.
   std::vector<Eigen::Vector3f> WarpedVertices() const;
@@ -121,6 +123,9 @@ class Surface {
   void FuseWarped(const LiveView& live, DepthObservation* observation);
   void GrowOverMesh();
   void AllocateAroundNodes(int first);
+  /// Goes back from the last recorded frame as far as the node is not seen to
+  /// be elsewhere.
+  int FirstSeen(int node, const RecentViews& views) const;
 
   int id_;
   std::string label_;

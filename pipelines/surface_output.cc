@@ -1,10 +1,14 @@
 #include "splitfusion/pipelines/surface_output.h"
 
+#include "splitfusion/lib/deformation/seen_triangles.h"
+
 namespace splitfusion {
 namespace {
 
-/// The final mesh under the motions of one frame, camera frame.
-TriangleMesh WarpMesh(const Surface& surface, const FrameMotions& motions) {
+/// The final mesh under the motions of one frame, camera frame; `whole`: with
+/// what was seen only later.
+TriangleMesh WarpMesh(const Surface& surface, const FrameMotions& motions,
+                      bool whole) {
   DeformationGraph graph = surface.graph();
   graph.motions = motions.motions;
   const WarpField warp(graph);
@@ -14,24 +18,28 @@ TriangleMesh WarpMesh(const Surface& surface, const FrameMotions& motions) {
     mesh.vertices[i] = warp.WarpPoint(skinning, mesh.vertices[i]);
     mesh.normals[i] = warp.WarpNormal(skinning, mesh.normals[i]);
   }
+  if (!whole) {
+    mesh.triangles = SeenTriangles(surface.mesh(), surface.mesh_skinning(),
+                                   surface.graph(), motions.frame);
+  }
   return mesh;
 }
 
 }  // namespace
 
 void WriteSurface(const RunPaths& paths, const Surface& surface,
-                  int warped_every) {
+                  const WarpedOutput& warped) {
   const std::string folder = paths.Surface(surface.id(), surface.label());
   WritePly(folder + "/mesh.ply", surface.mesh());
   surface.volume().Write(folder + "/tsdf.vdb");
   WriteGraph(folder + "/graph.json", surface.graph(),
              surface.options().graph.neighbors_per_point);
   WriteMotions(folder + "/motions.bin", surface.history());
-  if (surface.is_ray_cast() || warped_every <= 0) return;
+  if (surface.is_ray_cast() || warped.every <= 0) return;
   for (const FrameMotions& motions : surface.history().frames) {
-    if (motions.frame % warped_every != 0) continue;
+    if (motions.frame % warped.every != 0) continue;
     WritePly(paths.WarpedMesh(surface.id(), surface.label(), motions.frame),
-             WarpMesh(surface, motions));
+             WarpMesh(surface, motions, warped.whole));
   }
 }
 

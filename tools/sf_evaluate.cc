@@ -38,6 +38,9 @@ DEFINE_int32(label, -1,
              "label (0 = room without furniture); -1 = all.");
 DEFINE_int32(depth_every, 10,
              "Model against live depth in every n-th frame; 0 = not.");
+DEFINE_bool(whole_model, false,
+            "In every frame the whole final model, with what the camera saw "
+            "of it only later.");
 DEFINE_string(track_query, "",
               "CSV id,frame,x,y,z (camera frame, m): points of one frame to "
               "follow through --run.");
@@ -115,6 +118,10 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
   if (!IsComplete(RunPaths(FLAGS_run))) {
     std::cout << FLAGS_run << ": unfinished run (summary.json is missing or "
               << "says so); judged by the frames that it has\n";
+  }
+  if (FLAGS_whole_model) {
+    for (RecordedSurface& surface : run.surfaces)
+      surface.graph.first_seen.clear();
   }
   const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
   std::optional<GroundTruth> truth;

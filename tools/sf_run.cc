@@ -34,6 +34,8 @@ DEFINE_string(output, "", "Run directory to write.");
 DEFINE_bool(overwrite, false, "Replace an earlier run in --output.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
+DEFINE_bool(warped_whole, false,
+            "Warped meshes hold what was seen only later, too.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
 DECLARE_string(masks);
 DECLARE_double(max_depth);
@@ -199,7 +201,8 @@ class Run {
     const Stopwatch writing;
     fusion_.Finish();
     for (const auto& [id, surface] : fusion_.surfaces()) {
-      WriteSurface(directory_.paths(), *surface, FLAGS_warped_every);
+      WriteSurface(directory_.paths(), *surface,
+                   {FLAGS_warped_every, FLAGS_warped_whole});
       directory_.SetSurfaceSize(
           id, surface->graph().size(),
           static_cast<int>(surface->mesh().vertices.size()));

@@ -26,6 +26,9 @@ struct DeformationGraph {
   /// Eq. 6 sums over exactly these. Built along the surface, not across gaps.
   std::vector<std::vector<int>> neighbors;
   double node_spacing = 0;  ///< Metres; 0 for a rigid surface.
+  /// First frame in which what each node carries was seen. May be empty: then
+  /// all was seen from the start.
+  std::vector<int> first_seen;
 
   /// Number of nodes.
   int size() const { return static_cast<int>(positions.size()); }

@@ -99,6 +99,16 @@ void CheckEdges(const std::string& path, const DeformationGraph& graph) {
   }
 }
 
+void CheckFirstSeen(const std::string& path, const DeformationGraph& graph) {
+  if (!graph.first_seen.empty() &&
+      graph.first_seen.size() != graph.positions.size()) {
+    throw InputError(path + ": 'first_seen' has " +
+                     std::to_string(graph.first_seen.size()) +
+                     " entries: expected one a node, " +
+                     std::to_string(graph.positions.size()) + ", or none");
+  }
+}
+
 DeformationGraph ParseGraph(const std::string& path, const Json& json) {
   DeformationGraph graph;
   const char* field = "node_spacing";
@@ -107,11 +117,13 @@ DeformationGraph ParseGraph(const std::string& path, const Json& json) {
     graph.positions = Positions(json.at(field = "positions"));
     graph.neighbors =
         json.at(field = "edges").get<std::vector<std::vector<int>>>();
+    graph.first_seen = json.value(field = "first_seen", std::vector<int>());
   } catch (const Json::exception& error) {
     throw InputError(path + ": field '" + field + "': " + error.what());
   }
   graph.motions.resize(graph.positions.size());
   CheckEdges(path, graph);
+  CheckFirstSeen(path, graph);
   return graph;
 }
 
@@ -183,7 +195,8 @@ void WriteGraph(const std::string& path, const DeformationGraph& graph,
   const Json json = {{"node_spacing", graph.node_spacing},
                      {"neighbors_per_point", neighbors_per_point},
                      {"positions", positions},
-                     {"edges", graph.neighbors}};
+                     {"edges", graph.neighbors},
+                     {"first_seen", graph.first_seen}};
   WriteFileAtomically(path, [&](std::ostream& out) { out << json << '\n'; });
 }
 

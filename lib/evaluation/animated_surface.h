@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/deformation/seen_triangles.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
 
@@ -31,8 +32,13 @@ class AnimatedSurface {
   WarpField WarpAt(int frame) const;
 
   /// Vertices of the mesh in the camera frame of a frame that has motions,
-  /// metres; the triangles are those of the mesh.
+  /// metres.
   std::vector<Eigen::Vector3f> VerticesAt(int frame) const;
+
+  /// Triangles of the mesh that had been seen by a frame (SeenTriangles).
+  std::vector<Eigen::Vector3i> TrianglesAt(int frame) const {
+    return SeenTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
+  }
 
   /// Skinning of a canonical point, metres.
   Skinning Skin(const Eigen::Vector3f& point) const {

@@ -80,7 +80,8 @@ std::vector<Occasion> FindOccasions(const RecordedRun& run,
 TriangleMesh ModelInWorld(const AnimatedSurface& surface,
                           const Occasion& occasion) {
   TriangleMesh mesh;
-  mesh.triangles = surface.recorded().mesh.triangles;
+  mesh.triangles = surface.TrianglesAt(occasion.frame->index);
+  if (mesh.triangles.empty()) return mesh;
   mesh.vertices = surface.VerticesAt(occasion.frame->index);
   const Rigid3f world_from_camera = occasion.world_from_camera.cast<float>();
   for (Eigen::Vector3f& vertex : mesh.vertices) {

@@ -32,8 +32,7 @@ ModelView RenderModelView(const std::vector<const AnimatedSurface*>& surfaces,
   raster.Clear(camera);
   std::vector<int> ends;
   for (const AnimatedSurface* surface : surfaces) {
-    const std::vector<Eigen::Vector3i>& triangles =
-        surface->recorded().mesh.triangles;
+    const std::vector<Eigen::Vector3i> triangles = surface->TrianglesAt(frame);
     const int first = ends.empty() ? 0 : ends.back();
     RasterizeTriangles(surface->VerticesAt(frame), triangles, camera,
                        /*cull_back_faces=*/true, first, &raster);

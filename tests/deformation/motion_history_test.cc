@@ -106,8 +106,25 @@ TEST(Graph, RoundTripIsExact) {
   EXPECT_EQ(read.positions, Triangle().positions);
   EXPECT_EQ(read.neighbors, Triangle().neighbors);
   EXPECT_EQ(read.node_spacing, 0.025);
+  EXPECT_TRUE(read.first_seen.empty());
   ASSERT_EQ(read.motions.size(), 3u);
   EXPECT_TRUE(read.motions[2].rotation.isIdentity());
+}
+
+TEST(Graph, KeepsBirths) {
+  const TemporaryFolder folder;
+  DeformationGraph graph = Triangle();
+  graph.first_seen = {2, 2, 5};
+  WriteGraph(folder / "graph.json", graph, 4);
+  EXPECT_EQ(ReadGraph(folder / "graph.json", nullptr).first_seen,
+            graph.first_seen);
+}
+
+TEST(Graph, MayLackBirths) {
+  const TemporaryFolder folder;
+  folder.Write("graph.json", R"({"node_spacing": 1, "positions": [[1, 2, 3]],
+                                 "edges": [[]]})");
+  EXPECT_TRUE(ReadGraph(folder / "graph.json", nullptr).first_seen.empty());
 }
 
 TEST(Graph, NamesTheBadField) {
@@ -125,6 +142,11 @@ TEST(Graph, NamesTheBadField) {
   EXPECT_THAT(GraphMessage(path), HasSubstr("'edges' has 2 entries"));
   folder.Write("graph.json", head + R"("edges": [[1]]})");
   EXPECT_THAT(GraphMessage(path), HasSubstr("names node 1: expected 0..0"));
+  folder.Write("graph.json", head + R"("edges": [[]], "first_seen": [1, 2]})");
+  EXPECT_THAT(GraphMessage(path), HasSubstr("'first_seen' has 2 entries"));
+  folder.Write("graph.json",
+               head + R"("edges": [[]], "first_seen": ["early"]})");
+  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'first_seen'"));
   folder.Write("graph.json", head + R"("edges": [[]]})");
   int neighbors = 0;
   EXPECT_THROW(ReadGraph(path, &neighbors), InputError);

@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -22,6 +24,32 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+
+/// Renumbers the nodes of a surface from left to right.
+void SortByX(RecordedSurface* surface) {
+  DeformationGraph& graph = surface->graph;
+  std::vector<int> order(graph.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return graph.positions[a].x() < graph.positions[b].x();
+  });
+  std::vector<int> number(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    number[order[i]] = static_cast<int>(i);
+  }
+  const DeformationGraph before = graph;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    graph.positions[i] = before.positions[order[i]];
+    graph.neighbors[i] = before.neighbors[order[i]];
+    for (int& j : graph.neighbors[i]) j = number[j];
+  }
+  for (FrameMotions& frame : surface->motions.frames) {
+    const std::vector<NodeMotion> motions = frame.motions;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      frame.motions[i] = motions[order[i]];
+    }
+  }
+}
 
 /// A run of the plate and its ground truth, as files.
 class RunEvaluationTest : public ::testing::Test {
@@ -86,6 +114,55 @@ TEST_F(RunEvaluationTest, WarpedPlateLiesOnItsTruth) {
     EXPECT_LT(frame.view.uncovered, 30);  // At the border of the plate.
     EXPECT_LT(frame.view.distances.statistics.p90, 0.001);
   }
+}
+
+TEST_F(RunEvaluationTest, AModelIsThatOfItsFrame) {
+  // The right half of the plate is born after frame 0 and, before that, off by
+  // 10 cm: of no account in frame 0, and all right in frame 6.
+  RecordedRun run = ReadRun(folder_ / "run");
+  RecordedSurface& plate = run.surfaces[1];
+  SortByX(&plate);
+  DeformationGraph& graph = plate.graph;
+  for (int i = 0; i < graph.size(); ++i) {
+    const bool left = graph.positions[i].x() < 0;
+    graph.first_seen.push_back(left ? 0 : 1);
+    if (!left) plate.motions.frames[0].motions[i].translation.z() += 0.1;
+  }
+  const auto frames = [&] {
+    return EvaluateRun(run, AnimateSurfaces(run.surfaces),
+                       ReadGroundTruth(folder_ / "sequence"), options_)
+        .instances[0]
+        .frames;
+  };
+  const std::vector<InstanceFrameError> seen = frames();
+  // But for a strip as wide as the node spacing, an eighth of the half, and
+  // what the nodes on either side of the border carry together.
+  EXPECT_LT(seen[0].surface.accuracy.statistics.median, 0.001);
+  EXPECT_GT(seen[0].surface.accuracy.within[0], 0.7);
+  EXPECT_NEAR(seen[0].surface.completeness.within[0], 0.5, 0.1);
+  // At the other half's pixels is the wall, half a metre behind.
+  EXPECT_NEAR(seen[0].view.distances.statistics.mean, 0.15, 0.03);
+  EXPECT_LT(seen[1].surface.completeness.statistics.max, 0.001);
+  graph.first_seen.clear();
+  const std::vector<InstanceFrameError> whole = frames();
+  EXPECT_NEAR(whole[0].surface.accuracy.statistics.mean, 0.05, 0.01);
+  EXPECT_NEAR(whole[0].surface.completeness.within[0], 0.5, 0.1);
+  EXPECT_LT(whole[0].view.distances.statistics.mean, 0.1);
+}
+
+TEST_F(RunEvaluationTest, AModelOfWhichNothingWasSeenYetIsEmpty) {
+  RecordedRun run = ReadRun(folder_ / "run");
+  DeformationGraph& graph = run.surfaces[1].graph;
+  graph.first_seen.assign(graph.size(), 3);
+  const RunEvaluation evaluation =
+      EvaluateRun(run, AnimateSurfaces(run.surfaces),
+                  ReadGroundTruth(folder_ / "sequence"), options_);
+  const std::vector<InstanceFrameError>& frames =
+      evaluation.instances[0].frames;
+  EXPECT_EQ(frames[0].surface.accuracy.statistics.count, 0u);
+  EXPECT_FLOAT_EQ(frames[0].surface.completeness.statistics.mean, 0.3);
+  EXPECT_EQ(frames[0].surface.f_score[2], 0);
+  EXPECT_LT(frames[1].surface.accuracy.statistics.max, 0.001);
 }
 
 TEST_F(RunEvaluationTest, ViewErrorSeesWhatIsThereInsteadOfTheInstance) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "splitfusion/pipelines/model_rendering.h"
 #include "splitfusion/pipelines/surface_output.h"
 #include "support/expect_input_error.h"
@@ -152,7 +154,7 @@ TEST(Surface, IsWrittenWithConstantVertexOrder) {
   ApplyRigidMotion(MakeMotion({0, 0, 0}, {0.5, 0, 0}), box.mutable_graph());
   box.RecordMotions(5, true);
   box.RecordMotions(6, false);
-  WriteSurface(RunPaths(folder / "run"), box, /*warped_every=*/2);
+  WriteSurface(RunPaths(folder / "run"), box, {/*every=*/2, /*whole=*/false});
   const std::string at = "run/surfaces/001_teddy_bear/";
   EXPECT_FALSE(folder.Has(at + "warped/000005.ply"));
   const TriangleMesh rest = ReadPly(folder / (at + "mesh.ply"));
@@ -168,6 +170,62 @@ TEST(Surface, IsWrittenWithConstantVertexOrder) {
   EXPECT_EQ(ReadGraph(folder / (at + "graph.json"), nullptr).size(),
             box.graph().size());
   EXPECT_EQ(ReadMotions(folder / (at + "motions.bin")).frames.size(), 3u);
+}
+
+TEST(Surface, WarpedMeshesHoldWhatWasSeenByThen) {
+  const TemporaryFolder folder;
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true);
+  for (int frame = 5; frame < 10; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    box.RecordMotions(frame, true);
+  }
+  box.FinishMesh();
+  EXPECT_EQ(box.graph().first_seen.front(), 4);
+  EXPECT_GT(box.graph().first_seen.back(), 4);
+  EXPECT_EQ(static_cast<int>(box.graph().first_seen.size()),
+            box.graph().size());
+  const auto warped = [&](bool whole, const std::string& frame) {
+    const std::string run = whole ? "whole" : "seen";
+    WriteSurface(RunPaths(folder / run), box, {/*every=*/1, whole});
+    return ReadPly(folder /
+                   (run + "/surfaces/001_teddy_bear/warped/" + frame + ".ply"));
+  };
+  const std::size_t all = box.mesh().triangles.size();
+  const TriangleMesh first = warped(false, "000004");
+  EXPECT_EQ(first.vertices.size(), box.mesh().vertices.size());
+  EXPECT_GT(first.triangles.size(), 0.35 * all);
+  EXPECT_LT(first.triangles.size(), 0.65 * all) << "half of it was in view";
+  EXPECT_EQ(warped(false, "000009").triangles.size(), all);
+  EXPECT_EQ(warped(true, "000004").triangles.size(), all);
+}
+
+TEST(Surface, GoesBackToWhenANewPartWasFirstSeen) {
+  SurfaceOptions options;
+  options.looks = 4;  // The right half is model only after some frames.
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, options);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  RecentViews views;
+  views.Add(4, ViewWithBox(kHalf));
+  box.RecordMotions(4, true, views);
+  const int nodes = box.graph().size();
+  int born = 0;
+  for (int frame = 5; frame < 12; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    views.Add(frame, ViewWithBox(kWhole));
+    if (born == 0 && box.graph().size() > 1.5 * nodes) born = frame;
+    box.RecordMotions(frame, true, views);
+  }
+  ASSERT_GT(born, 6);
+  const std::vector<int>& first_seen = box.graph().first_seen;
+  // In frame 4 there was the wall, farther away, but beside the left half.
+  const auto in_5 = std::count(first_seen.begin() + nodes, first_seen.end(), 5);
+  const auto in_4 = std::count(first_seen.begin() + nodes, first_seen.end(), 4);
+  EXPECT_EQ(in_4 + in_5, static_cast<int>(first_seen.size()) - nodes);
+  EXPECT_GT(in_5, 2 * in_4);
 }
 
 /// Background and box as a scene.

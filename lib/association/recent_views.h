@@ -1,0 +1,52 @@
+#ifndef SPLITFUSION_LIB_ASSOCIATION_RECENT_VIEWS_H_
+#define SPLITFUSION_LIB_ASSOCIATION_RECENT_VIEWS_H_
+
+#include <Eigen/Core>
+#include <deque>
+#include <optional>
+
+#include "splitfusion/lib/association/live_view.h"
+
+namespace splitfusion {
+
+/// What a frame shows where a point of a surface ought to be.
+enum class Sighting {
+  kSeen,       ///< The surface, at the depth of the point.
+  kUnknown,    ///< Nothing that speaks for or against it: out of view, hidden,
+               ///< no depth, another surface.
+  kFreeSpace,  ///< Something farther away: the point cannot be there.
+};
+
+/// Depth and labels of the last frames, to tell since when a part of a surface
+/// has been in view that became model only now.
+class RecentViews {
+ public:
+  /// Forgets all but the last `frames`.
+  RecentViews(int frames = 30) : frames_(frames) {}
+
+  /// Adds the next frame; shares its images.
+  void Add(int frame, const LiveView& live);
+
+  /// What a frame shows at, and a few pixels around, a point of `surface`
+  /// (camera frame, metres); empty if the frame is forgotten.
+  std::optional<Sighting> Look(int frame, int surface,
+                               const Eigen::Vector3d& point) const;
+
+ private:
+  struct View {
+    int frame = 0;
+    PinholeCamera camera;
+    cv::Mat_<float> depth;
+    cv::Mat_<std::uint16_t> labels;
+  };
+
+  static Sighting LookAround(const View& view, int surface,
+                             const Eigen::Vector2d& pixel, double z);
+
+  int frames_;
+  std::deque<View> views_;  // Ascending by frame.
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ASSOCIATION_RECENT_VIEWS_H_
