@@ -300,7 +300,10 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   const std::map<int, int> pixels = PixelsOfSurfaces(live_);
   const Rigid3d world_from_camera = WorldFromCamera();
   trajectory_.push_back({frame.timestamp, world_from_camera});
-  recent_views_.Add(frame.index, live_);
+  // Only what deforms grows nodes.
+  if (options_.deform_objects || options_.deform_background) {
+    recent_views_.Add(frame.index, live_);
+  }
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
     const auto found = surfaces_.find(id);

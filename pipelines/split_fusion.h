@@ -96,7 +96,7 @@ class SplitFusion {
   SurfaceMap surfaces_;
   Trajectory trajectory_;
   LiveView live_;
-  RecentViews recent_views_;  ///< The last frames, `live_` among them.
+  RecentViews recent_views_;  ///< With the frame of `live_` at the end.
   MeshRendering rendering_;
   ModelMap background_map_;
   /// By surface; of the background in the camera frame, of others in world.

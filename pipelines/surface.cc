@@ -190,7 +190,9 @@ int Surface::FirstSeen(int node, const RecentViews& views) const {
     const std::optional<Sighting> sighting =
         views.Look(motions->frame, id_,
                    graph_.positions[node] + motions->motions[node].translation);
-    if (!sighting || *sighting == Sighting::kFreeSpace) break;
+    if (!sighting) break;
+    if (!motions->tracked) continue;  // Nobody knows where it was.
+    if (*sighting == Sighting::kFreeSpace) break;
     if (*sighting == Sighting::kSeen) first = motions->frame;
   }
   return first;

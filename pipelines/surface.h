@@ -70,7 +70,7 @@ class Surface {
 
   /// Appends the current motions to the history. `views`, with this frame the
   /// last one, tell since when the nodes that are new in it have been in view.
-  void RecordMotions(int frame, bool tracked, const RecentViews& views = {});
+  void RecordMotions(int frame, bool tracked, const RecentViews& views);
 
   /// Mesh vertices under the current motions, camera frame.
   std::vector<Eigen::Vector3f> WarpedVertices() const;

@@ -120,8 +120,9 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
               << "says so); judged by the frames that it has\n";
   }
   if (FLAGS_whole_model) {
-    for (RecordedSurface& surface : run.surfaces)
+    for (RecordedSurface& surface : run.surfaces) {
       surface.graph.first_seen.clear();
+    }
   }
   const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
   std::optional<GroundTruth> truth;
@@ -130,7 +131,8 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
     FollowQueries(run, surfaces, options);
     if (!truth) return;
   }
-  const RunEvaluation evaluation = EvaluateRun(run, surfaces, truth, options);
+  RunEvaluation evaluation = EvaluateRun(run, surfaces, truth, options);
+  evaluation.whole_model = FLAGS_whole_model;
   Publish(FormatTable(evaluation), ToJson(evaluation),
           (std::filesystem::path(FLAGS_run) / "evaluation.json").string());
 }
@@ -146,6 +148,7 @@ void CheckUsage() {
   require(uses == 1, "expected one of --run, --trajectory, --mesh; see --help");
   require(given(FLAGS_track_query) == given(FLAGS_track_output),
           "--track_query and --track_output go together");
+  require(!FLAGS_whole_model || given(FLAGS_run), "--whole_model needs --run");
   require(!given(FLAGS_track_query) || given(FLAGS_run),
           "--track_query needs --run");
   require(!given(FLAGS_trajectory) || given(FLAGS_ground_truth),

@@ -2,7 +2,9 @@
 #define SPLITFUSION_LIB_ASSOCIATION_RECENT_VIEWS_H_
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <deque>
+#include <opencv2/core.hpp>
 #include <optional>
 
 #include "splitfusion/lib/association/live_view.h"
@@ -17,12 +19,13 @@ enum class Sighting {
   kFreeSpace,  ///< Something farther away: the point cannot be there.
 };
 
-/// Depth and labels of the last frames, to tell since when a part of a surface
-/// has been in view that became model only now.
+/// Depth and labels of the last frames (1.8 MB each at 640x480), to tell since
+/// when a part of a surface has been in view that became model only now.
 class RecentViews {
  public:
+  RecentViews() = default;
   /// Forgets all but the last `frames`.
-  RecentViews(int frames = 30) : frames_(frames) {}
+  explicit RecentViews(int frames) : frames_(frames) {}
 
   /// Adds the next frame; shares its images.
   void Add(int frame, const LiveView& live);
@@ -43,7 +46,7 @@ class RecentViews {
   static Sighting LookAround(const View& view, int surface,
                              const Eigen::Vector2d& pixel, double z);
 
-  int frames_;
+  int frames_ = 30;
   std::deque<View> views_;  // Ascending by frame.
 };
 

@@ -26,8 +26,9 @@ struct DeformationGraph {
   /// Eq. 6 sums over exactly these. Built along the surface, not across gaps.
   std::vector<std::vector<int>> neighbors;
   double node_spacing = 0;  ///< Metres; 0 for a rigid surface.
-  /// First frame in which what each node carries was seen. May be empty: then
-  /// all was seen from the start.
+  /// First frame in which what each node carries was seen. Where it is not
+  /// known of all of them, it is of none, and all counts as seen from the
+  /// start.
   std::vector<int> first_seen;
 
   /// Number of nodes.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -74,11 +75,16 @@ FrameMotions ReadFrame(std::istream& stream, std::uint32_t nodes) {
   return frame;
 }
 
-std::vector<Eigen::Vector3d> Positions(const Json& json) {
+std::vector<Eigen::Vector3d> Positions(const std::string& path,
+                                       const Json& json) {
   std::vector<Eigen::Vector3d> positions;
   for (const Json& item : json) {
     const auto p = item.get<std::array<double, 3>>();
     positions.emplace_back(p[0], p[1], p[2]);
+    if (!positions.back().cast<float>().allFinite()) {
+      throw InputError(path + ": field 'positions': " + item.dump() +
+                       ": expected metres");
+    }
   }
   return positions;
 }
@@ -99,14 +105,25 @@ void CheckEdges(const std::string& path, const DeformationGraph& graph) {
   }
 }
 
-void CheckFirstSeen(const std::string& path, const DeformationGraph& graph) {
-  if (!graph.first_seen.empty() &&
-      graph.first_seen.size() != graph.positions.size()) {
+std::vector<int> FirstSeen(const std::string& path, const Json& json,
+                           std::size_t nodes) {
+  if (json.size() != nodes && !json.empty()) {
     throw InputError(path + ": 'first_seen' has " +
-                     std::to_string(graph.first_seen.size()) +
-                     " entries: expected one a node, " +
-                     std::to_string(graph.positions.size()) + ", or none");
+                     std::to_string(json.size()) +
+                     " entries: expected one a node, " + std::to_string(nodes) +
+                     ", or none");
   }
+  std::vector<int> frames;
+  for (const Json& item : json) {
+    const bool is_frame =
+        item.is_number_unsigned() && item.get<std::uint64_t>() <= INT32_MAX;
+    if (!is_frame) {
+      throw InputError(path + ": field 'first_seen': " + item.dump() +
+                       ": expected a frame index");
+    }
+    frames.push_back(item.get<int>());
+  }
+  return frames;
 }
 
 DeformationGraph ParseGraph(const std::string& path, const Json& json) {
@@ -114,16 +131,21 @@ DeformationGraph ParseGraph(const std::string& path, const Json& json) {
   const char* field = "node_spacing";
   try {
     graph.node_spacing = json.at(field).get<double>();
-    graph.positions = Positions(json.at(field = "positions"));
+    graph.positions = Positions(path, json.at(field = "positions"));
     graph.neighbors =
         json.at(field = "edges").get<std::vector<std::vector<int>>>();
-    graph.first_seen = json.value(field = "first_seen", std::vector<int>());
   } catch (const Json::exception& error) {
     throw InputError(path + ": field '" + field + "': " + error.what());
   }
+  if (!std::isfinite(graph.node_spacing) || graph.node_spacing < 0) {
+    throw InputError(
+        path + ": field 'node_spacing': " + std::to_string(graph.node_spacing) +
+        ": expected metres >= 0");
+  }
   graph.motions.resize(graph.positions.size());
   CheckEdges(path, graph);
-  CheckFirstSeen(path, graph);
+  graph.first_seen = FirstSeen(path, json.value("first_seen", Json::array()),
+                               graph.positions.size());
   return graph;
 }
 

@@ -28,7 +28,11 @@ bool WasSeen(const Eigen::Vector3f& point, const Skinning& skinning,
 std::vector<Eigen::Vector3i> SeenTriangles(
     const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
     const DeformationGraph& graph, int frame) {
-  if (graph.first_seen.empty()) return mesh.triangles;
+  const bool all_seen =
+      graph.first_seen.size() < graph.positions.size() ||
+      std::all_of(graph.first_seen.begin(), graph.first_seen.end(),
+                  [frame](int first) { return first <= frame; });
+  if (all_seen) return mesh.triangles;
   std::vector<char> was_seen(mesh.vertices.size());
   for (std::size_t i = 0; i < was_seen.size(); ++i) {
     was_seen[i] = WasSeen(mesh.vertices[i], skinning[i], graph, frame);

@@ -13,9 +13,13 @@ namespace splitfusion {
 /// The part of a surface's final mesh that had been seen by a frame: triangles
 /// whose corners lie near nodes that had (DeformationGraph::first_seen).
 ///
-/// Motions carry every vertex to every frame, but those of a node before its
-/// birth are only blended from the nodes around it: an arm that came into view
-/// raised would stick out, raised and in free space, in all frames before.
+/// A node is near as far as the node spacing: so far the graph did not grow. At
+/// GraphOptions::max_nodes it does not grow at all, and what is new is near an
+/// old node, however far away.
+///
+/// Motions carry every vertex to every frame, but those of a node before it
+/// was made are only blended from the nodes around it: an arm that came into
+/// view raised would stick out, raised and in free space, in all frames before.
 ///
 /// `mesh` canonical, metres; `skinning`: of its vertices by the nodes of
 /// `graph`.

@@ -150,6 +150,7 @@ Json ToJson(const RunEvaluation& evaluation) {
   Json json = {{"run", evaluation.run}};
   json["ground_truth"] =
       evaluation.trajectory ? Json(evaluation.ground_truth) : Json();
+  json["whole_model"] = evaluation.whole_model;
   json.update(TrajectoryJson(evaluation.trajectory));
   json["background"] =
       evaluation.background ? ToJson(*evaluation.background) : Json();

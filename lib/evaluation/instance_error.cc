@@ -81,6 +81,7 @@ TriangleMesh ModelInWorld(const AnimatedSurface& surface,
                           const Occasion& occasion) {
   TriangleMesh mesh;
   mesh.triangles = surface.TrianglesAt(occasion.frame->index);
+  // Without triangles it would be taken for a cloud of all its vertices.
   if (mesh.triangles.empty()) return mesh;
   mesh.vertices = surface.VerticesAt(occasion.frame->index);
   const Rigid3f world_from_camera = occasion.world_from_camera.cast<float>();

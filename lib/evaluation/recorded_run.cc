@@ -127,6 +127,14 @@ void ParseName(const fs::path& folder, RecordedSurface* surface) {
   surface->label = name.substr(digits + 1);
 }
 
+void CheckVertices(const std::string& path, const TriangleMesh& mesh) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (mesh.vertices[i].allFinite()) continue;
+    throw InputError(path + ": vertex " + std::to_string(i) +
+                     " is not finite: expected metres");
+  }
+}
+
 void CheckMotions(const std::string& path, const RecordedSurface& surface) {
   const std::size_t nodes = surface.graph.positions.size();
   if (nodes == 0) throw InputError(path + ": graph.json has no node");
@@ -158,6 +166,7 @@ RecordedSurface ReadRecordedSurface(const std::string& folder) {
   RecordedSurface surface;
   ParseName(path, &surface);
   surface.mesh = ReadPly((path / "mesh.ply").string());
+  CheckVertices((path / "mesh.ply").string(), surface.mesh);
   surface.graph =
       ReadGraph((path / "graph.json").string(), &surface.neighbors_per_point);
   surface.motions = ReadMotions((path / "motions.bin").string());

@@ -46,6 +46,9 @@ struct TrackEvaluation {
 struct RunEvaluation {
   std::string run;           ///< The run directory.
   std::string ground_truth;  ///< Folder of groundtruth.txt; empty if none.
+  /// Set by whoever cleared DeformationGraph::first_seen: the model of every
+  /// frame was the whole final one.
+  bool whole_model = false;
   std::optional<TrajectoryError> trajectory;  ///< ATE, RPE, alignment.
   /// The background's mesh, put into the true world by
   /// TrajectoryError::truth_from_estimate_by_poses.

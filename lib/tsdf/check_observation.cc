@@ -24,10 +24,7 @@ void CheckSize(const cv::Mat& image, const std::string& name,
 void CheckObservation(const DepthObservation& observation,
                       const TsdfOptions& options) {
   const cv::Size size(observation.camera.width, observation.camera.height);
-  if (size.width < 1 || size.height < 1) {
-    throw InputError("observation: camera is " + SizeText(size) +
-                     ": expected at least 1x1");
-  }
+  observation.camera.Check();
   CheckSize(observation.depth, "depth", size);
   CheckSize(observation.weight, "weight", size);
   CheckSize(observation.role, "role", size);

@@ -36,6 +36,21 @@ TEST_F(RecentViewsTest, APointOnTheSurfaceIsSeen) {
   EXPECT_EQ(Look(0.2, 1.5), Sighting::kSeen);
   EXPECT_EQ(Look(0.2, 1.51), Sighting::kSeen);
   EXPECT_EQ(Look(0.2, 1.49), Sighting::kSeen);
+  // Three sigma of the noise at 1.5 m are 10 mm; and 2 cm.
+  EXPECT_EQ(Look(0.2, 1.525), Sighting::kSeen);
+  EXPECT_EQ(Look(0.2, 1.475), Sighting::kSeen);
+  EXPECT_EQ(Look(0.2, 1.54), Sighting::kUnknown);
+  EXPECT_EQ(Look(0.2, 1.46), Sighting::kFreeSpace);
+}
+
+TEST_F(RecentViewsTest, APointJustBesideTheSilhouetteIsSeen) {
+  const PinholeCamera camera = SmallCamera();
+  const auto look = [&](double pixels_left) {
+    const double u = camera.width / 2 - pixels_left;
+    return Look((u - camera.cx) / camera.fx * 1.5, 1.5);
+  };
+  EXPECT_EQ(look(3), Sighting::kSeen);
+  EXPECT_EQ(look(7), Sighting::kFreeSpace);
 }
 
 TEST_F(RecentViewsTest, APointBeforeWhatIsSeenIsInFreeSpace) {
@@ -52,6 +67,9 @@ TEST_F(RecentViewsTest, OutOfViewIsUnknown) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double x : {-5.0, 5.0, 1e300, nan}) {
     EXPECT_EQ(Look(x, 1.5), Sighting::kUnknown) << x;
+  }
+  for (const double y : {-5.0, 5.0, 1e300, nan}) {
+    EXPECT_EQ(views_.Look(7, 3, {0.2, y, 1.5}), Sighting::kUnknown) << y;
   }
   for (const double z : {-1.5, 0.0, nan}) {
     EXPECT_EQ(Look(0.2, z), Sighting::kUnknown) << z;

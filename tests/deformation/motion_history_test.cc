@@ -111,7 +111,7 @@ TEST(Graph, RoundTripIsExact) {
   EXPECT_TRUE(read.motions[2].rotation.isIdentity());
 }
 
-TEST(Graph, KeepsBirths) {
+TEST(Graph, KeepsFirstSights) {
   const TemporaryFolder folder;
   DeformationGraph graph = Triangle();
   graph.first_seen = {2, 2, 5};
@@ -120,7 +120,7 @@ TEST(Graph, KeepsBirths) {
             graph.first_seen);
 }
 
-TEST(Graph, MayLackBirths) {
+TEST(Graph, MayLackFirstSights) {
   const TemporaryFolder folder;
   folder.Write("graph.json", R"({"node_spacing": 1, "positions": [[1, 2, 3]],
                                  "edges": [[]]})");
@@ -144,9 +144,20 @@ TEST(Graph, NamesTheBadField) {
   EXPECT_THAT(GraphMessage(path), HasSubstr("names node 1: expected 0..0"));
   folder.Write("graph.json", head + R"("edges": [[]], "first_seen": [1, 2]})");
   EXPECT_THAT(GraphMessage(path), HasSubstr("'first_seen' has 2 entries"));
+  for (const char* wrong : {"\"early\"", "-1", "2.7", "true", "null", "1e20",
+                            "2147483648", "4294967299"}) {
+    folder.Write("graph.json",
+                 head + R"("edges": [[]], "first_seen": [)" + wrong + "]}");
+    EXPECT_THAT(GraphMessage(path), HasSubstr("field 'first_seen'")) << wrong;
+  }
   folder.Write("graph.json",
-               head + R"("edges": [[]], "first_seen": ["early"]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'first_seen'"));
+               R"({"node_spacing": 1, "positions": [[1, 2, 1e39]],
+                   "edges": [[]]})");
+  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'positions'"));
+  folder.Write("graph.json",
+               R"({"node_spacing": -1, "positions": [[1, 2, 3]],
+                   "edges": [[]]})");
+  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'node_spacing'"));
   folder.Write("graph.json", head + R"("edges": [[]]})");
   int neighbors = 0;
   EXPECT_THROW(ReadGraph(path, &neighbors), InputError);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "splitfusion/pipelines/model_rendering.h"
 #include "splitfusion/pipelines/surface_output.h"
@@ -69,13 +70,13 @@ TEST(Surface, AnObjectIsMeshedAndCoveredWithNodes) {
 TEST(Surface, GrowsOverWhatComesIntoView) {
   Surface box = MakeBox(SurfaceKind::kNonRigid);
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true);
+  box.RecordMotions(4, true, {});
   const int nodes = box.graph().size();
   const std::size_t vertices = box.mesh().vertices.size();
   for (int frame = 5; frame < 9; ++frame) {
     box.Fuse(ViewWithBox(kWhole));
     box.UpdateMesh();
-    box.RecordMotions(frame, true);
+    box.RecordMotions(frame, true, {});
   }
   EXPECT_GT(box.graph().size(), 1.5 * nodes);
   EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
@@ -126,7 +127,7 @@ TEST(Surface, PartsAstrayDoNotCopyWhatIsModelledElsewhere) {
   for (int frame = 5; frame < 15; ++frame) {
     box.Fuse(ViewWithBox(kWhole));
     box.UpdateMesh();
-    box.RecordMotions(frame, true);
+    box.RecordMotions(frame, true, {});
   }
   EXPECT_LT(right_end(), before + 0.02);
 }
@@ -150,10 +151,10 @@ TEST(Surface, IsWrittenWithConstantVertexOrder) {
   const TemporaryFolder folder;
   Surface box = MakeBox(SurfaceKind::kNonRigid);
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true);
+  box.RecordMotions(4, true, {});
   ApplyRigidMotion(MakeMotion({0, 0, 0}, {0.5, 0, 0}), box.mutable_graph());
-  box.RecordMotions(5, true);
-  box.RecordMotions(6, false);
+  box.RecordMotions(5, true, {});
+  box.RecordMotions(6, false, {});
   WriteSurface(RunPaths(folder / "run"), box, {/*every=*/2, /*whole=*/false});
   const std::string at = "run/surfaces/001_teddy_bear/";
   EXPECT_FALSE(folder.Has(at + "warped/000005.ply"));
@@ -176,11 +177,11 @@ TEST(Surface, WarpedMeshesHoldWhatWasSeenByThen) {
   const TemporaryFolder folder;
   Surface box = MakeBox(SurfaceKind::kNonRigid);
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true);
+  box.RecordMotions(4, true, {});
   for (int frame = 5; frame < 10; ++frame) {
     box.Fuse(ViewWithBox(kWhole));
     box.UpdateMesh();
-    box.RecordMotions(frame, true);
+    box.RecordMotions(frame, true, {});
   }
   box.FinishMesh();
   EXPECT_EQ(box.graph().first_seen.front(), 4);
@@ -226,6 +227,106 @@ TEST(Surface, GoesBackToWhenANewPartWasFirstSeen) {
   const auto in_4 = std::count(first_seen.begin() + nodes, first_seen.end(), 4);
   EXPECT_EQ(in_4 + in_5, static_cast<int>(first_seen.size()) - nodes);
   EXPECT_GT(in_5, 2 * in_4);
+}
+
+/// How nodes that are new in frame 9 fare that were in view before: the whole
+/// box is model in frame 9, of which frame 4 showed the left half.
+class FirstSight : public ::testing::Test {
+ protected:
+  FirstSight() : box_(5, "box", SurfaceKind::kNonRigid, 4, Slow()) {
+    EXPECT_TRUE(box_.Initialize(Show(kHalf, 0)));
+    Add(4, Show(kHalf, 0));
+  }
+
+  /// The box is slow to be modelled: by nothing but many looks.
+  static SurfaceOptions Slow() {
+    SurfaceOptions options;
+    options.looks = 4;
+    return options;
+  }
+
+  /// The box moved to the right by some pixels; surface 5.
+  static LiveView Show(cv::Rect area, int right) {
+    area.x += right;
+    LiveView live = ViewWithBox(area);
+    live.labels.setTo(5, live.labels == 1);
+    return live;
+  }
+
+  /// Metres that the box moves by a pixel.
+  static double Step() { return 1.0 / SmallCamera().fx; }
+
+  void MoveTo(int right) {
+    for (NodeMotion& motion : box_.mutable_graph()->motions) {
+      motion.translation = {right * Step(), 0, 0};
+    }
+  }
+
+  void Add(int frame, const LiveView& live, bool tracked = true) {
+    views_.Add(frame, live);
+    box_.RecordMotions(frame, tracked, views_);
+  }
+
+  /// Models the whole box, in frame 9, where it stands.
+  void GrowIn9(int right) {
+    const int nodes = box_.graph().size();
+    MoveTo(right);
+    for (int i = 0; i < 6; ++i) {
+      box_.Fuse(Show(kWhole, right));
+      box_.UpdateMesh();
+    }
+    ASSERT_GT(box_.graph().size(), 1.5 * nodes);
+    Add(9, Show(kWhole, right));
+  }
+
+  /// Of the nodes at the right end, which frame 4 shows in free space.
+  std::set<int> FirstSeen() const {
+    std::set<int> frames;
+    for (int i = 0; i < box_.graph().size(); ++i) {
+      if (box_.graph().positions[i].x() > 0.1) {
+        frames.insert(box_.graph().first_seen[i]);
+      }
+    }
+    return frames;
+  }
+
+  Surface box_;
+  RecentViews views_;
+};
+
+TEST_F(FirstSight, FollowsTheMotionOfEveryFrame) {
+  for (int frame = 5; frame < 9; ++frame) {
+    MoveTo(6 * (frame - 4));
+    Add(frame, Show(kWhole, 6 * (frame - 4)));
+  }
+  GrowIn9(30);
+  EXPECT_EQ(FirstSeen(), std::set<int>({5}));
+}
+
+TEST_F(FirstSight, LooksPastFramesThatHideIt) {
+  LiveView hidden = Show(kWhole, 0);
+  hidden.depth(kWhole).setTo(0.7f);
+  hidden.labels(kWhole).setTo(2);
+  Add(6, Show(kWhole, 0));
+  Add(7, hidden);
+  Add(8, hidden);
+  GrowIn9(0);
+  EXPECT_EQ(FirstSeen(), std::set<int>({6}));
+}
+
+TEST_F(FirstSight, EndsWhereThereIsFreeSpace) {
+  Add(5, Show(kWhole, 0));
+  Add(6, Show(kHalf, 0));
+  Add(7, Show(kWhole, 0));
+  GrowIn9(0);
+  EXPECT_EQ(FirstSeen(), std::set<int>({7}));
+}
+
+TEST_F(FirstSight, LooksPastFramesInWhichTheSurfaceWasNotTracked) {
+  Add(6, Show(kWhole, 0));
+  Add(7, Show(kHalf, 0), /*tracked=*/false);
+  GrowIn9(0);
+  EXPECT_EQ(FirstSeen(), std::set<int>({6}));
 }
 
 /// Background and box as a scene.

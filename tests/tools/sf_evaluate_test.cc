@@ -55,6 +55,27 @@ TEST_F(SfEvaluate, WritesTheEvaluationOfARun) {
   EXPECT_LT(json["tracks"]["visible"]["max"], 0.001);
 }
 
+TEST_F(SfEvaluate, JudgesTheModelOfTheFrameOrTheWholeModel) {
+  const std::string graph = "run/surfaces/001_thin_plate/graph.json";
+  auto json = nlohmann::json::parse(folder_.Read(graph));
+  json["first_seen"] = std::vector<int>(json["positions"].size(), 3);
+  folder_.Write(graph, json.dump());
+  // Nothing was seen of it in frame 0.
+  for (const bool whole : {false, true}) {
+    const ProgramResult result =
+        Run("--samples=2000 --run=" + (folder_ / "run") + " --ground_truth=" +
+            (folder_ / "gt") + (whole ? " --whole_model" : ""));
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    const auto found =
+        nlohmann::json::parse(folder_.Read("run/evaluation.json"));
+    EXPECT_EQ(found["whole_model"], whole);
+    const auto& frame = found["instances"][0]["frames"][0]["surface"];
+    EXPECT_EQ(frame["f_score"]["0.02"], whole ? 1 : 0);
+  }
+  ExpectRefused("--whole_model --trajectory=a --ground_truth=b",
+                "--whole_model needs --run");
+}
+
 TEST_F(SfEvaluate, NeedsNoTruthToCompareTheModelWithTheLiveDepth) {
   const std::string arguments = "--depth_every=3 --run=" + (folder_ / "run");
   ProgramResult result = Run(arguments);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "support/expect_refused.h"
 #include "support/program.h"
 #include "support/temporary_folder.h"
@@ -33,6 +34,22 @@ std::vector<std::string> Poses(const std::string& text) {
     if (!line.empty() && line[0] != '#') lines.push_back(line);
   }
   return lines;
+}
+
+TEST_F(SfRun, WarpedMeshesHoldWhatWasSeenByThenOrAll) {
+  Synthesize();
+  // Triangles of the person's mesh that a warped mesh lacks.
+  const auto missing = [&](const std::string& run, const std::string& frame) {
+    const std::string surface = folder_ / (run + "/surfaces/001_person/");
+    return ReadPly(surface + "mesh.ply").triangles.size() -
+           ReadPly(surface + "warped/" + frame + ".ply").triangles.size();
+  };
+  const std::string flags = "--warped_every=3 --pictures_every=0 ";
+  ASSERT_EQ(Run("seen", flags).exit_code, 0);
+  ASSERT_EQ(Run("whole", flags + "--warped_whole").exit_code, 0);
+  EXPECT_GT(missing("seen", "000000"), 0u);
+  EXPECT_EQ(missing("seen", "000003"), 0u);
+  EXPECT_EQ(missing("whole", "000000"), 0u);
 }
 
 TEST_F(SfRun, WritesWhatTheContractNames) {

@@ -25,7 +25,7 @@ float Dither(int time, int z) {
   return static_cast<float>(std::min(phase - std::floor(phase), 0.999));
 }
 
-/// The nearest packed colour.
+/// The nearest packed colour, or one beside it.
 std::int32_t PackBytes(const cv::Vec3b& bgr) {
   return PackColor(ChannelFromByte(bgr[2]), ChannelFromByte(bgr[1]),
                    ChannelFromByte(bgr[0]));
