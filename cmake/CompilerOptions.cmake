@@ -45,7 +45,7 @@ function(splitfusion_spare_openvdb_files)
   endif()
   foreach(source ${ARGN})
     file(STRINGS "${source}" openvdb
-         REGEX "include.*(openvdb/|tsdf/internal/)")
+         REGEX "include.*(openvdb/|tsdf/internal/(grids|leaf_mesh|padded_leaf))")
     if(openvdb)
       set_source_files_properties("${source}" PROPERTIES
         COMPILE_OPTIONS -fno-sanitize=undefined)

@@ -1,7 +1,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "splitfusion/lib/base/floor_to_int.h"
@@ -19,7 +18,7 @@ constexpr int kPixelStride = 2;
 
 openvdb::Coord LeafOrigin(const Eigen::Vector3d& voxel) {
   const auto align = [](double v) {
-    return static_cast<int>(std::floor(v / kLeafSize)) * kLeafSize;
+    return FloorToInt(v / kLeafSize) * kLeafSize;
   };
   return {align(voxel.x()), align(voxel.y()), align(voxel.z())};
 }

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 #include "splitfusion/lib/tsdf/internal/leaf_mesh.h"
 
@@ -172,6 +173,9 @@ MeshExtractor& MeshExtractor::operator=(MeshExtractor&&) noexcept = default;
 TriangleMesh MeshExtractor::Extract(const TsdfVolume& volume,
                                     double min_weight) {
   static_assert(kMaxMinWeight <= internal::kFirmWeight);
+  const bool again = blocks_->time >= 0;
+  CheckOption(!again || min_weight <= kMaxMinWeight, "min_weight", min_weight,
+              "at most 8 where a volume is meshed again");
   const internal::LeafLookup lookup(volume);
   // The mesh of a block reaches into its neighbours, and the faces around its
   // lowest voxels have corners in the blocks before it.

@@ -26,8 +26,10 @@ class MeshExtractor {
 
   /// Triangle mesh of the zero level, see ExtractMesh(). `volume` must be the
   /// one of the calls before, changed by integration only; another one, or
-  /// another `min_weight`, needs another extractor. `min_weight`: at most
-  /// kMaxMinWeight.
+  /// another `min_weight`, needs another extractor.
+  ///
+  /// @throw InputError if `min_weight` is above kMaxMinWeight in any call but
+  /// the first.
   TriangleMesh Extract(const TsdfVolume& volume, double min_weight);
 
   /// For every vertex of the last mesh its index in the mesh before, if it has

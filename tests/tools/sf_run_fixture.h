@@ -19,11 +19,11 @@ class SfRun : public ::testing::Test {
     }
   }
 
-  /// A tiny sequence of four frames in the folder `sequence`.
-  void Synthesize() const {
+  /// A tiny sequence in the folder `sequence`; `arguments`: of sf_synth.
+  void Synthesize(const std::string& arguments = "--frames=4") const {
     const ProgramResult result =
-        RunProgram("sf_synth", "--width=160 --height=120 --frames=4 --output=" +
-                                   (folder_ / "sequence"));
+        RunProgram("sf_synth", "--width=160 --height=120 --output=" +
+                                   (folder_ / "sequence") + " " + arguments);
     ASSERT_EQ(result.exit_code, 0) << result.errors;
   }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 #include "support/sample_depth.h"
 #include "support/sample_graphs.h"
@@ -92,6 +93,15 @@ TEST(MeshExtractor, ChangesAreMeshedAsIfAllWereMeshedAnew) {
     ExpectSame(extractor.Extract(volume, kMinWeight),
                ExtractMesh(volume, kMinWeight));
   }
+}
+
+TEST(MeshExtractor, RefusesWeightsWhoseChangesItIsNotTold) {
+  TsdfVolume volume(kOptions);
+  FuseFrame(0, &volume);
+  MeshExtractor extractor;
+  const double above = MeshExtractor::kMaxMinWeight + 1;
+  extractor.Extract(volume, above);  // All is new.
+  EXPECT_THROW(extractor.Extract(volume, above), InputError);
 }
 
 TEST(MeshExtractor, VoxelsThatGetTheLargestMinWeightAreMeshed) {
