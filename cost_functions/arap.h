@@ -41,6 +41,24 @@ struct Arap {
             graph.motions[i].rotation * (g_i - g_j), 1.0};
   }
 
+  /// What annealing adds to the weight of the prior, `anneal` - 1 times it,
+  /// shall not unbend what is bent: it asks that the edge be as it was in the
+  /// frame before, turned with its node since,
+  ///
+  ///   q_before = R_i R_i,before^T (c_i,before - c_j,before).
+  ///
+  /// But for a constant both energies together are `anneal` times the prior of
+  /// the mean edge (q + (anneal - 1) q_before) / anneal, which replaces q.
+  void HoldBend(const DeformationGraph& graph,
+                const std::vector<NodeMotion>& before, double anneal, int i,
+                int j) {
+    const Eigen::Vector3d was = graph.positions[i] + before[i].translation -
+                                (graph.positions[j] + before[j].translation);
+    const Eigen::Matrix3d turn =
+        graph.motions[i].rotation * before[i].rotation.transpose();
+    edge += (anneal - 1) / anneal * (turn * was - edge);
+  }
+
   /// `twists`: {twist_i, twist_j}.
   template <typename T>
   bool operator()(T const* const* twists, T* residual) const {
@@ -56,7 +74,8 @@ struct Arap {
   }
 };
 
-/// E_prior of Eq. 6 over all directed edges; absent on a one-node graph.
+/// E_prior of Eq. 6 over all directed edges; absent on a one-node graph. While
+/// it is annealed, what it weighs more holds the bend of the frame before.
 class ArapTerm : public EnergyTerm {
  public:
   void AddResiduals(const EnergyInput& input,
@@ -67,6 +86,9 @@ class ArapTerm : public EnergyTerm {
       for (const int j : input.graph.neighbors[i]) {
         nodes.push_back({i, j});
         functors.push_back(Arap::Make(input.graph, i, j));
+        if (input.before == nullptr) continue;
+        functors.back().HoldBend(input.graph, *input.before, input.anneal, i,
+                                 j);
       }
     }
     sink->AddNodes(nodes, functors);

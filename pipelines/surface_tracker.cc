@@ -264,7 +264,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
     round.solver =
         Minimize({energy_, association.correspondences, live.camera,
                   prior_factor * MeanConfidence(association.correspondences),
-                  &live, &before},
+                  &live, &before, prior_factor},
                  solver_, graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

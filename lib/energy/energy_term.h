@@ -31,6 +31,8 @@ struct EnergyInput {
   /// this frame: where it was found. Null where a problem is solved without
   /// history.
   const std::vector<NodeMotion>* before = nullptr;
+  /// By how much annealing multiplies the weight of priors, >= 1.
+  double anneal = 1;
 };
 
 /// One term of the energy (SplitFusion Eq. 4).

@@ -48,11 +48,12 @@ struct SurfaceProblem {
   /// Pairs of model and live points of the surface.
   const std::vector<Correspondence>& correspondences;
   const PinholeCamera& camera;  ///< Live camera.
-  double prior_factor = 1;      ///< Annealing: multiplies the priors' weights.
+  double prior_factor = 1;      ///< Multiplies the priors' weights.
   /// For terms that ask for them, see EnergyInput; may be null.
   const LiveView* live = nullptr;
   /// As `live`.
   const std::vector<NodeMotion>* before = nullptr;
+  double anneal = 1;  ///< Part of `prior_factor` that is annealing.
 };
 
 /// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7) and

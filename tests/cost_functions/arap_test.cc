@@ -118,6 +118,51 @@ TEST(ArapTerm, SumsOverAllDirectedEdges) {
   EXPECT_TRUE(ArapTerm().is_prior());
 }
 
+/// The energy of one edge that `anneal` asks for, written down: the prior, and
+/// the rest of its weight on the edge of the frame before.
+double AnnealedEnergy(const DeformationGraph& graph,
+                      const DeformationGraph& before, double anneal) {
+  const Eigen::Vector3d r = Value(Arap::Make(graph, 0, 1), kNoTwists);
+  const Eigen::Matrix3d turn =
+      graph.motions[0].rotation * before.motions[0].rotation.transpose();
+  const auto along = [](const DeformationGraph& g) -> Eigen::Vector3d {
+    return g.positions[0] + g.motions[0].translation - g.positions[1] -
+           g.motions[1].translation;
+  };
+  return r.squaredNorm() +
+         (anneal - 1) * (along(graph) - turn * along(before)).squaredNorm();
+}
+
+TEST(Arap, AnnealingHoldsTheBendOfTheFrameBefore) {
+  constexpr double kAnneal = 5;
+  DeformationGraph before = SampleGraph();
+  Shake(0.2, /*seed=*/5, &before);
+  const auto held = [&](const DeformationGraph& graph) {
+    Arap arap = Arap::Make(graph, 0, 1);
+    arap.HoldBend(graph, before.motions, kAnneal, 0, 1);
+    return kAnneal * Value(arap, kNoTwists).squaredNorm();
+  };
+  // Equal but for a constant, wherever the nodes are.
+  const double constant =
+      AnnealedEnergy(before, before, kAnneal) - held(before);
+  for (int seed = 6; seed < 16; ++seed) {
+    DeformationGraph moved = before;
+    Shake(0.2, seed, &moved);
+    ApplyRigidMotion(MakeMotion({0.4, -1.2, 0.3}, {1, 2, -3}), &moved);
+    EXPECT_NEAR(AnnealedEnergy(moved, before, kAnneal), held(moved) + constant,
+                1e-12);
+  }
+}
+
+TEST(Arap, WithoutAnnealingTheFrameBeforeIsNoMatter) {
+  DeformationGraph graph = SampleGraph();
+  const std::vector<NodeMotion> before = graph.motions;
+  Shake(0.2, /*seed=*/7, &graph);
+  Arap arap = Arap::Make(graph, 0, 1);
+  arap.HoldBend(graph, before, /*anneal=*/1, 0, 1);
+  EXPECT_EQ(arap.edge, Arap::Make(graph, 0, 1).edge);
+}
+
 TEST(ArapTerm, IsAbsentOnARigidSurface) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   const AddedResiduals added =

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "pipelines/tracking_scenes.h"
 
@@ -68,6 +69,37 @@ TEST(TermInput, ATermMayHoldARigidSurfaceWhereItWas) {
   EXPECT_NEAR(moved(MakeTracker()), 0.03, 0.001);
   // Not 0: the term leaves turns free.
   EXPECT_LT(moved(MakeSluggishTracker()), 0.003);
+}
+
+/// Adds nothing; notes the annealing that it is told.
+class AnnealNotes : public EnergyTerm {
+ public:
+  explicit AnnealNotes(std::vector<double>* notes) : notes_(notes) {}
+
+  void AddResiduals(const EnergyInput& input, ResidualSink*) const override {
+    notes_->push_back(input.anneal);
+  }
+
+ private:
+  std::vector<double>* notes_;
+};
+
+TEST(TermInput, ATermIsToldTheAnnealing) {
+  std::vector<double> notes;
+  TermRegistry terms = BuiltinTerms();
+  terms.Register("notes",
+                 [&notes] { return std::make_unique<AnnealNotes>(&notes); });
+  TrackerOptions options = TrackerOptions::Defaults();
+  options.prior_anneal = 6;
+  BendingSheet sheet;
+  SurfaceReport report;
+  MakeTracker(options, "notes(weight=1)", terms)
+      .Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(), &sheet.graph,
+             &report);
+  ASSERT_FALSE(notes.empty());
+  EXPECT_EQ(notes.front(), 1);  // Of the rigid rounds.
+  EXPECT_NEAR(*std::max_element(notes.begin(), notes.end()), 6, 1e-12);
+  EXPECT_NEAR(notes.back(), 1, 1e-12);
 }
 
 TEST(TermInput, ATermMayHoldTheNodesWhereTheyWere) {
