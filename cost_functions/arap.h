@@ -47,8 +47,9 @@ struct Arap {
   ///
   ///   q_before = R_i R_i,before^T (c_i,before - c_j,before).
   ///
-  /// But for a constant both energies together are `anneal` times the prior of
-  /// the mean edge (q + (anneal - 1) q_before) / anneal, which replaces q.
+  /// But for a constant (and without a robust loss) both energies together are
+  /// `anneal` times the prior of the mean edge
+  /// (q + (anneal - 1) q_before) / anneal, which replaces q.
   void HoldBend(const DeformationGraph& graph,
                 const std::vector<NodeMotion>& before, double anneal, int i,
                 int j) {
@@ -75,7 +76,8 @@ struct Arap {
 };
 
 /// E_prior of Eq. 6 over all directed edges; absent on a one-node graph. While
-/// it is annealed, what it weighs more holds the bend of the frame before.
+/// it is annealed, what it weighs more holds the bend of the frame before, if
+/// that is known.
 class ArapTerm : public EnergyTerm {
  public:
   void AddResiduals(const EnergyInput& input,

@@ -53,7 +53,9 @@ struct SurfaceProblem {
   const LiveView* live = nullptr;
   /// As `live`.
   const std::vector<NodeMotion>* before = nullptr;
-  double anneal = 1;  ///< Part of `prior_factor` that is annealing.
+  /// Part of `prior_factor` that is annealing; for terms that ask for it, it
+  /// weighs nothing by itself.
+  double anneal = 1;
 };
 
 /// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7) and

@@ -13,7 +13,8 @@ namespace splitfusion {
 /// time are meshed anew. Gives what ExtractMesh() gives.
 class MeshExtractor {
  public:
-  /// The most that `min_weight` may be: integration does not tell where the
+  /// The most that `min_weight` may be in a volume that is meshed again:
+  /// integration does not tell where the
   /// weight of a voxel that has more has changed.
   static constexpr double kMaxMinWeight = 8;
 
@@ -28,8 +29,8 @@ class MeshExtractor {
   /// one of the calls before, changed by integration only; another one, or
   /// another `min_weight`, needs another extractor.
   ///
-  /// @throw InputError if `min_weight` is above kMaxMinWeight in any call but
-  /// the first.
+  /// @throw InputError if `min_weight` is not finite, or above kMaxMinWeight in
+  /// any call but the first.
   TriangleMesh Extract(const TsdfVolume& volume, double min_weight);
 
   /// For every vertex of the last mesh its index in the mesh before, if it has

@@ -163,6 +163,29 @@ TEST(Arap, WithoutAnnealingTheFrameBeforeIsNoMatter) {
   EXPECT_EQ(arap.edge, Arap::Make(graph, 0, 1).edge);
 }
 
+TEST(ArapTerm, IsAnnealedAboutTheFrameBefore) {
+  constexpr double kAnneal = 5;
+  DeformationGraph before = SampleGraph();
+  Shake(0.05, /*seed=*/5, &before);
+  DeformationGraph graph = before;
+  Shake(0.01, /*seed=*/8, &graph);
+  const TermOptions options{"arap", /*weight=*/3, LossKind::kTrivial, 0.01};
+  const AddedResiduals added = ResidualsOf(
+      ArapTerm(),
+      {graph, {}, PinholeCamera(), nullptr, &before.motions, kAnneal}, options);
+  double sum = 0;
+  for (int i = 0; i < graph.size(); ++i) {
+    for (const int j : graph.neighbors[i]) {
+      Arap arap = Arap::Make(graph, i, j);
+      arap.HoldBend(graph, before.motions, kAnneal, i, j);
+      sum += Value(arap, kNoTwists).squaredNorm();
+    }
+  }
+  const double cost = EnergyOf(graph, added.residuals);
+  EXPECT_NEAR(cost, 3.0 / added.residual_vectors * sum / (0.01 * 0.01),
+              1e-9 * cost);
+}
+
 TEST(ArapTerm, IsAbsentOnARigidSurface) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   const AddedResiduals added =
