@@ -14,8 +14,8 @@ namespace splitfusion {
 class MeshExtractor {
  public:
   /// The most that `min_weight` may be in a volume that is meshed again:
-  /// integration does not tell where the
-  /// weight of a voxel that has more has changed.
+  /// integration does not tell where the weight of a voxel that has more has
+  /// changed.
   static constexpr double kMaxMinWeight = 8;
 
   MeshExtractor();
