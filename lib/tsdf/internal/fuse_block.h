@@ -1,6 +1,9 @@
 #ifndef SPLITFUSION_LIB_TSDF_INTERNAL_FUSE_BLOCK_H_
 #define SPLITFUSION_LIB_TSDF_INTERNAL_FUSE_BLOCK_H_
 
+#include <algorithm>
+#include <cmath>
+
 #include "splitfusion/lib/tsdf/internal/fuse_row.h"
 #include "splitfusion/lib/tsdf/internal/lanes.h"
 #include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
@@ -17,46 +20,60 @@ SPLITFUSION_INLINE FusedLeaf VoxelsFrom(const FusedLeaf& leaf, int offset) {
           leaf.color == nullptr ? nullptr : leaf.color + offset};
 }
 
-/// Asks the memory for one slab of a block.
-SPLITFUSION_INLINE void PrefetchSlab(const FusedLeaf& leaf, int x) {
-  constexpr int kLine = 64 / sizeof(float);
-  for (int i = x * kSlab; i < (x + 1) * kSlab; i += kLine) {
-    __builtin_prefetch(leaf.distance + i, 1);
-    __builtin_prefetch(leaf.weight + i, 1);
-    if (leaf.color != nullptr) __builtin_prefetch(leaf.color + i, 1);
+/// Asks the memory for the voxels from one on, of one line of the cache.
+SPLITFUSION_INLINE void Prefetch(const FusedLeaf& from) {
+  __builtin_prefetch(from.distance, 1);
+  __builtin_prefetch(from.weight, 1);
+  if (from.color != nullptr) __builtin_prefetch(from.color, 1);
+}
+
+/// Voxels of some slabs as the camera sees them, pack by pack.
+template <typename Pack>
+struct SeenSlabs {
+  static constexpr int kPacks = 8;  ///< Worked on at once.
+  static constexpr int kSlabs = kPacks * Pack::kCount / kSlab;
+  static_assert(kSlabs * kSlab == kPacks * Pack::kCount);
+
+  std::int32_t pixel[kPacks][Pack::kCount];
+  typename Pack::Real z[kPacks];  ///< Metres.
+  /// With a minus: only carved. Not set where none is.
+  typename Pack::Whole foreign[kPacks];
+};
+
+/// Fuses what has been looked up; `kAsksChanges`: see FuseRow().
+template <typename Pack, bool kAsksChanges>
+SPLITFUSION_INLINE void FuseRows(const FusionView& view,
+                                 const SeenSlabs<Pack>& slabs,
+                                 const SeenRow<Pack>* rows,
+                                 const FusedLeaf& leaf,
+                                 typename Pack::Whole* changed) {
+  for (int i = 0; i < slabs.kPacks; ++i) {
+    if (!Pack::Any(rows[i].changes)) continue;
+    FuseRow<Pack, kAsksChanges>(view, slabs.pixel[i], slabs.z[i], rows[i],
+                                VoxelsFrom(leaf, i * Pack::kCount), changed);
   }
 }
 
-/// The voxels of a slab as the camera sees them, pack by pack.
-template <typename Pack>
-struct SeenSlab {
-  static constexpr int kPacks = kSlab / Pack::kCount;
-
-  std::int32_t pixel[kPacks][Pack::kCount];
-  typename Pack::Real z[kPacks];         ///< Metres.
-  typename Pack::Whole foreign[kPacks];  ///< With a minus: only carved.
-  bool hidden[kPacks];                   ///< Nothing of the pack can change.
-};
-
-/// Fuses into a slab. All packs are looked up before the first is written: that
-/// hides the latency of the image.
-template <typename Pack>
-SPLITFUSION_INLINE void FuseSlab(const FusionView& view,
-                                 const SeenSlab<Pack>& slab,
-                                 const FusedLeaf& leaf,
-                                 typename Pack::Whole* changed) {
-  SeenRow<Pack> rows[slab.kPacks];
-  for (int i = 0; i < slab.kPacks; ++i) {
-    if (slab.hidden[i]) {
-      rows[i].changes = typename Pack::Mask{};
-    } else {
-      SeeRow<Pack>(view, slab.pixel[i], slab.z[i], slab.foreign[i], &rows[i]);
-    }
+/// Fuses into slabs side by side, from `leaf` on; `next`: what is asked of the
+/// memory meanwhile, as many voxels. All packs are looked up before the first
+/// is written: one after the other each would wait for its pixels and
+/// quotients. Once `changed` says so it is not asked again. `kForeign`: see
+/// SeeRow().
+template <typename Pack, bool kForeign>
+SPLITFUSION_INLINE void FuseSlabs(const FusionView& view,
+                                  const SeenSlabs<Pack>& slabs,
+                                  const FusedLeaf& leaf, const FusedLeaf& next,
+                                  typename Pack::Whole* changed) {
+  SeenRow<Pack> rows[slabs.kPacks];
+  for (int i = 0; i < slabs.kPacks; ++i) {
+    Prefetch(VoxelsFrom(next, i * Pack::kCount));
+    SeeRow<Pack, kForeign>(view, slabs.pixel[i], slabs.z[i], slabs.foreign[i],
+                           &rows[i]);
   }
-  for (int i = 0; i < slab.kPacks; ++i) {
-    if (!Pack::Any(rows[i].changes)) continue;
-    FuseRow<Pack>(view, slab.pixel[i], slab.z[i], rows[i],
-                  VoxelsFrom(leaf, i * Pack::kCount), changed);
+  if (Pack::Any(Pack::NotZero(*changed))) {
+    FuseRows<Pack, false>(view, slabs, rows, leaf, changed);
+  } else {
+    FuseRows<Pack, true>(view, slabs, rows, leaf, changed);
   }
 }
 
@@ -95,19 +112,15 @@ struct RigidSlab {
       for (int axis = 0; axis < 3; ++axis) {
         offsets[i][axis] = y * along_y.axes[axis] + z * along_z.axes[axis];
       }
-      // Along both axes the nearest voxel is at an end.
-      const auto end = [](float step, int count) {
-        return step < 0 ? static_cast<float>(count) * step : 0.0f;
-      };
-      lowest[i] = offsets[i][2][0] + end(along_z.axes[2], kSide - 1) +
-                  end(along_y.axes[2], Pack::kCount / kSide - 1);
     }
-    nearest = lowest[along_y.axes[2] < 0 ? kPacks - 1 : 0];
+    // Along both axes the nearest voxel is at an end.
+    constexpr float kEnd = kSide - 1;
+    nearest = std::min(kEnd * along_y.axes[2], 0.0f) +
+              std::min(kEnd * along_z.axes[2], 0.0f);
   }
 
   typename Pack::Real offsets[kPacks][3];  // As SeenVoxels.
-  float lowest[kPacks];                    // Depths are not below.
-  float nearest;                           // The least of them.
+  float nearest;                           // Depths are not below.
 };
 
 /// FuseRigid() of one block; `kAllInside`: all of its voxels are in the image.
@@ -116,32 +129,37 @@ SPLITFUSION_INLINE bool FuseRigidBlock(const FusionView& view,
                                        const RigidSlab<Pack>& slab,
                                        const SeenPoint& along_x,
                                        const RigidBlock& block) {
-  PrefetchSlab(block.leaf, 0);
-  PrefetchSlab(block.leaf, 1);
+  using Seen = SeenSlabs<Pack>;
+  constexpr int kSlabs = Seen::kSlabs;
+  for (int i = 0; i < Seen::kPacks; ++i) {
+    Prefetch(VoxelsFrom(block.leaf, i * Pack::kCount));
+  }
   const SeenPoint start(view, block.base);
-  const float farthest = block.part.farthest;
-  SeenSlab<Pack> seen;
-  for (auto& foreign : seen.foreign) foreign = typename Pack::Whole{};
+  Seen seen;
   typename Pack::Whole changed = {};
-  for (int x = 0; x < kSide; ++x) {
-    if (x + 2 < kSide) PrefetchSlab(block.leaf, x + 2);
-    float corner[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      corner[axis] =
-          start.axes[axis] + static_cast<float>(x) * along_x.axes[axis];
+  for (int x = 0; x < kSide; x += kSlabs) {
+    float nearest = INFINITY;
+    for (int k = 0; k < kSlabs; ++k) {
+      float corner[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        corner[axis] =
+            start.axes[axis] + static_cast<float>(x + k) * along_x.axes[axis];
+      }
+      nearest = std::min(nearest, corner[2] + slab.nearest);
+      for (int i = 0; i < slab.kPacks; ++i) {
+        const SeenVoxels<Pack> at = {corner[0] + slab.offsets[i][0],
+                                     corner[1] + slab.offsets[i][1],
+                                     corner[2] + slab.offsets[i][2]};
+        const auto pixel = PixelsOf<Pack, kAllInside>(view, at);
+        const int pack = k * slab.kPacks + i;
+        std::memcpy(seen.pixel[pack], &pixel, sizeof(pixel));
+        seen.z[pack] = at.z;
+      }
     }
-    if (corner[2] + slab.nearest > farthest) continue;
-    for (int i = 0; i < slab.kPacks; ++i) {
-      seen.hidden[i] = corner[2] + slab.lowest[i] > farthest;
-      if (seen.hidden[i]) continue;
-      const SeenVoxels<Pack> at = {corner[0] + slab.offsets[i][0],
-                                   corner[1] + slab.offsets[i][1],
-                                   corner[2] + slab.offsets[i][2]};
-      const auto pixel = PixelsOf<Pack, kAllInside>(view, at);
-      std::memcpy(seen.pixel[i], &pixel, sizeof(pixel));
-      seen.z[i] = at.z;
-    }
-    FuseSlab<Pack>(view, seen, VoxelsFrom(block.leaf, x * kSlab), &changed);
+    if (nearest > block.part.farthest) continue;
+    const int next = std::min(x + kSlabs, kSide - kSlabs);
+    FuseSlabs<Pack, false>(view, seen, VoxelsFrom(block.leaf, x * kSlab),
+                           VoxelsFrom(block.leaf, next * kSlab), &changed);
   }
   return Pack::Any(Pack::NotZero(changed));
 }

@@ -56,7 +56,8 @@ SPLITFUSION_INLINE typename Pack::Whole PixelsOf(const FusionView& view,
 
 /// Running means of colours, by channels. They are rounded up as often as they
 /// are close to the upper value: else a small difference would never move them.
-template <typename Pack>
+/// `changed`: see FuseRow().
+template <typename Pack, bool kAsksChanges>
 SPLITFUSION_INLINE void BlendColors(const FusionView& view,
                                     const std::int32_t pixel[Pack::kCount],
                                     const typename Pack::Real& blend,
@@ -80,7 +81,7 @@ SPLITFUSION_INLINE void BlendColors(const FusionView& view,
   }
   after = Pack::Select(colored, after, before);
   std::memcpy(color, &after, sizeof(after));
-  *changed |= after ^ before;
+  if (kAsksChanges) *changed |= after ^ before;
 }
 
 /// What the camera says about voxels that are side by side.
@@ -90,9 +91,9 @@ struct SeenRow {
   typename Pack::Mask changes;        ///< Says something.
 };
 
-/// Looks voxels up, given their pixels, their depths and which of them are
-/// foreign: those have a minus.
-template <typename Pack>
+/// Looks voxels up, given their pixels, their depths and, with `kForeign`,
+/// which of them are foreign: those have a minus.
+template <typename Pack, bool kForeign>
 SPLITFUSION_INLINE void SeeRow(const FusionView& view,
                                const std::int32_t pixel[Pack::kCount],
                                const typename Pack::Real& z,
@@ -100,7 +101,9 @@ SPLITFUSION_INLINE void SeeRow(const FusionView& view,
                                SeenRow<Pack>* row) {
   Pack::GatherPairs(reinterpret_cast<const float(*)[2]>(view.pixels), pixel,
                     &row->depth, &row->weight);
-  row->weight = Pack::FromBits(Pack::Bits(row->weight) | foreign);
+  if (kForeign) {
+    row->weight = Pack::FromBits(Pack::Bits(row->weight) | foreign);
+  }
   const typename Pack::Real sdf = row->depth - z;
   // In front of the truncation, or behind it if the pixel writes.
   const typename Pack::Whole writes = ~Pack::Bits(row->weight) & INT32_MIN;
@@ -124,8 +127,8 @@ SPLITFUSION_INLINE typename Pack::Real FreeFrom(
 }
 
 /// Fuses what is seen into voxels that are side by side in memory, from `leaf`
-/// on. Leaves bits in `changed` where a mesh may show it.
-template <typename Pack>
+/// on. With `kAsksChanges`, leaves bits in `changed` where a mesh may show it.
+template <typename Pack, bool kAsksChanges>
 SPLITFUSION_INLINE void FuseRow(const FusionView& view,
                                 const std::int32_t pixel[Pack::kCount],
                                 const typename Pack::Real& z,
@@ -153,17 +156,20 @@ SPLITFUSION_INLINE void FuseRow(const FusionView& view,
   distance = Pack::Select(row.changes, distance, old_distance);
   const Real weight =
       Pack::Select(row.changes, Pack::Min(cap, sum), old_weight);
-  const Mask soft =
-      Pack::Less(Pack::Min(weight, old_weight), Real{} + kFirmWeight);
-  *changed |= Pack::Bits(distance) ^ Pack::Bits(old_distance);
-  *changed |= Pack::Select(soft, Pack::Bits(weight) ^ Pack::Bits(old_weight),
-                           typename Pack::Whole{});
+  if (kAsksChanges) {
+    const Mask soft =
+        Pack::Less(Pack::Min(weight, old_weight), Real{} + kFirmWeight);
+    *changed |= Pack::Bits(distance) ^ Pack::Bits(old_distance);
+    *changed |= Pack::Select(soft, Pack::Bits(weight) ^ Pack::Bits(old_weight),
+                             typename Pack::Whole{});
+  }
   std::memcpy(leaf.distance, &distance, sizeof(Real));
   std::memcpy(leaf.weight, &weight, sizeof(Real));
   if (leaf.color == nullptr) return;
   const Mask colored = row.changes & Pack::Less(sdf, truncation);
   if (!Pack::Any(colored)) return;
-  BlendColors<Pack>(view, pixel, blend, colored, leaf.color, changed);
+  BlendColors<Pack, kAsksChanges>(view, pixel, blend, colored, leaf.color,
+                                  changed);
 }
 
 }  // namespace internal

@@ -2,6 +2,7 @@
 
 #include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "splitfusion/lib/base/vector_clones.h"
@@ -68,7 +69,8 @@ bool FuseWarpedLeaf(const FusionView& view,
     const SeenPoint point(local, lattice[i]);
     std::memcpy(seen[i], point.axes, sizeof(point.axes));
   }
-  SeenSlab<EightLanes> slab;
+  SeenSlabs<EightLanes> slab;
+  static_assert(slab.kSlabs == 1);
   Flags changed = {};
   for (int x = 0; x < kSide; ++x) {
     float plane[9][3];
@@ -85,9 +87,10 @@ bool FuseWarpedLeaf(const FusionView& view,
       const std::int32_t a = cells[0] ? INT32_MIN : 0;
       const std::int32_t b = cells[1] ? INT32_MIN : 0;
       slab.foreign[y] = Flags{a, a, a, a, b, b, b, b};
-      slab.hidden[y] = false;
     }
-    FuseSlab<EightLanes>(local, slab, VoxelsFrom(leaf, x * kSlab), &changed);
+    const int next = std::min(x + 1, kSide - 1);
+    FuseSlabs<EightLanes, true>(local, slab, VoxelsFrom(leaf, x * kSlab),
+                                VoxelsFrom(leaf, next * kSlab), &changed);
   }
   return EightLanes::Any(EightLanes::NotZero(changed));
 }

@@ -78,13 +78,25 @@ struct SixteenLanes {
     return _mm512_castsi512_ps((__m512i)bits);
   }
 
+  /// Two indices at once: half as many loads.
+  struct TwoIndices {
+    explicit SPLITFUSION_INLINE TwoIndices(const std::int32_t index[2]) {
+      std::uint64_t both;
+      std::memcpy(&both, index, sizeof(both));
+      first = both & UINT32_MAX;
+      second = both >> 32;
+    }
+    std::uint64_t first, second;
+  };
+
   /// Eight pairs of numbers at `index` of an array of pairs.
   static SPLITFUSION_INLINE __m512
   GatherEightPairs(const float (*pairs)[2], const std::int32_t index[8]) {
     const auto two = [&](int i) {
+      const TwoIndices at(index + i);
       double pair[2];
-      std::memcpy(&pair[0], pairs[index[i]], sizeof(double));
-      std::memcpy(&pair[1], pairs[index[i + 1]], sizeof(double));
+      std::memcpy(&pair[0], pairs[at.first], sizeof(double));
+      std::memcpy(&pair[1], pairs[at.second], sizeof(double));
       return _mm_set_pd(pair[1], pair[0]);
     };
     const __m256d low =
@@ -114,10 +126,11 @@ struct SixteenLanes {
   static SPLITFUSION_INLINE WideFlags Gather(const std::int32_t* numbers,
                                              const std::int32_t index[16]) {
     const auto four = [&](int i) {
-      __m128i words = _mm_cvtsi32_si128(numbers[index[i]]);
-      words = _mm_insert_epi32(words, numbers[index[i + 1]], 1);
-      words = _mm_insert_epi32(words, numbers[index[i + 2]], 2);
-      return _mm_insert_epi32(words, numbers[index[i + 3]], 3);
+      const TwoIndices low(index + i), high(index + i + 2);
+      __m128i words = _mm_cvtsi32_si128(numbers[low.first]);
+      words = _mm_insert_epi32(words, numbers[low.second], 1);
+      words = _mm_insert_epi32(words, numbers[high.first], 2);
+      return _mm_insert_epi32(words, numbers[high.second], 3);
     };
     const __m256i low =
         _mm256_inserti128_si256(_mm256_castsi128_si256(four(0)), four(4), 1);
