@@ -35,10 +35,12 @@ double MedianDepth(const LiveView& live, int id) {
 constexpr double kModelledVoxels = 3;
 
 /// How far from its place in the canonical frame a live point may be fused,
-/// metres: where a surface bends, voxels before and behind it, as far as the
-/// truncation, lie closer to or farther from one another than they are seen.
+/// metres: voxels before and behind it are as far as the truncation, and the
+/// cells in which warped voxels are asked for together have an extent. What is
+/// carried upon a surface from farther away is a part astray: were it to take
+/// the points of that surface, its copy would spread over all of it.
 double PlaceTolerance(const TsdfOptions& options) {
-  return 2 * options.truncation + 4 * options.voxel_size;
+  return options.truncation + 4 * options.voxel_size;
 }
 
 /// Places of live points, every fourth pixel, that the graph has to grow over.
