@@ -38,7 +38,9 @@ constexpr double kModelledVoxels = 3;
 /// metres: voxels before and behind it are as far as the truncation, and the
 /// cells in which warped voxels are asked for together have an extent. What is
 /// carried upon a surface from farther away is a part astray: were it to take
-/// the points of that surface, its copy would spread over all of it.
+/// the points of that surface, its copy would spread over all of it. That
+/// leaves nothing for bends and for places that are rounded to vertices: the
+/// outermost voxels of some cells are carved only.
 double PlaceTolerance(const TsdfOptions& options) {
   return options.truncation + 4 * options.voxel_size;
 }

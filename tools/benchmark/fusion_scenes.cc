@@ -43,7 +43,7 @@ void SetPlaces(const LiveView& live, int surface, DepthObservation* observed) {
           on_it ? live.map.points(v, u) : cv::Vec3f(nowhere, nowhere, nowhere);
     }
   }
-  observed->place_tolerance = 0.08;
+  observed->place_tolerance = 0.05;
 }
 
 }  // namespace

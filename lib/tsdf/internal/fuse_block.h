@@ -2,7 +2,6 @@
 #define SPLITFUSION_LIB_TSDF_INTERNAL_FUSE_BLOCK_H_
 
 #include <algorithm>
-#include <cmath>
 
 #include "splitfusion/lib/tsdf/internal/fuse_row.h"
 #include "splitfusion/lib/tsdf/internal/lanes.h"
@@ -20,7 +19,8 @@ SPLITFUSION_INLINE FusedLeaf VoxelsFrom(const FusedLeaf& leaf, int offset) {
           leaf.color == nullptr ? nullptr : leaf.color + offset};
 }
 
-/// Asks the memory for the voxels from one on, of one line of the cache.
+/// Asks the memory for the voxels that share a line of the cache with the
+/// first.
 SPLITFUSION_INLINE void Prefetch(const FusedLeaf& from) {
   __builtin_prefetch(from.distance, 1);
   __builtin_prefetch(from.weight, 1);
@@ -36,7 +36,7 @@ struct SeenSlabs {
 
   std::int32_t pixel[kPacks][Pack::kCount];
   typename Pack::Real z[kPacks];  ///< Metres.
-  /// With a minus: only carved. Not set where none is.
+  /// With a minus: only carved. Not set without kForeign.
   typename Pack::Whole foreign[kPacks];
 };
 
@@ -138,25 +138,22 @@ SPLITFUSION_INLINE bool FuseRigidBlock(const FusionView& view,
   Seen seen;
   typename Pack::Whole changed = {};
   for (int x = 0; x < kSide; x += kSlabs) {
-    float nearest = INFINITY;
-    for (int k = 0; k < kSlabs; ++k) {
-      float corner[3];
-      for (int axis = 0; axis < 3; ++axis) {
-        corner[axis] =
-            start.axes[axis] + static_cast<float>(x + k) * along_x.axes[axis];
-      }
-      nearest = std::min(nearest, corner[2] + slab.nearest);
-      for (int i = 0; i < slab.kPacks; ++i) {
-        const SeenVoxels<Pack> at = {corner[0] + slab.offsets[i][0],
-                                     corner[1] + slab.offsets[i][1],
-                                     corner[2] + slab.offsets[i][2]};
-        const auto pixel = PixelsOf<Pack, kAllInside>(view, at);
-        const int pack = k * slab.kPacks + i;
-        std::memcpy(seen.pixel[pack], &pixel, sizeof(pixel));
-        seen.z[pack] = at.z;
-      }
+    const float z_begin =
+        start.axes[2] + static_cast<float>(x) * along_x.axes[2];
+    const float z_end =
+        start.axes[2] + static_cast<float>(x + kSlabs - 1) * along_x.axes[2];
+    if (std::min(z_begin, z_end) + slab.nearest > block.part.farthest) continue;
+    for (int pack = 0; pack < Seen::kPacks; ++pack) {
+      const float along = static_cast<float>(x + pack / slab.kPacks);
+      const auto& offset = slab.offsets[pack % slab.kPacks];
+      SeenVoxels<Pack> at;
+      at.zu = start.axes[0] + along * along_x.axes[0] + offset[0];
+      at.zv = start.axes[1] + along * along_x.axes[1] + offset[1];
+      at.z = start.axes[2] + along * along_x.axes[2] + offset[2];
+      const auto pixel = PixelsOf<Pack, kAllInside>(view, at);
+      std::memcpy(seen.pixel[pack], &pixel, sizeof(pixel));
+      seen.z[pack] = at.z;
     }
-    if (nearest > block.part.farthest) continue;
     const int next = std::min(x + kSlabs, kSide - kSlabs);
     FuseSlabs<Pack, false>(view, seen, VoxelsFrom(block.leaf, x * kSlab),
                            VoxelsFrom(block.leaf, next * kSlab), &changed);

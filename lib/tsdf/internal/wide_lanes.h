@@ -78,7 +78,7 @@ struct SixteenLanes {
     return _mm512_castsi512_ps((__m512i)bits);
   }
 
-  /// Two indices at once: half as many loads.
+  /// Two indices, none negative, at once: half as many loads.
   struct TwoIndices {
     explicit SPLITFUSION_INLINE TwoIndices(const std::int32_t index[2]) {
       std::uint64_t both;
