@@ -57,8 +57,8 @@ SPLITFUSION_INLINE void FuseRows(const FusionView& view,
 /// Fuses into slabs side by side, from `leaf` on; `next`: what is asked of the
 /// memory meanwhile, as many voxels. All packs are looked up before the first
 /// is written: one after the other each would wait for its pixels and
-/// quotients. Once `changed` says so it is not asked again. `kForeign`: see
-/// SeeRow().
+/// quotients. Once `changed` has a bit, further changes are not looked for.
+/// `kForeign`: see SeeRow().
 template <typename Pack, bool kForeign>
 SPLITFUSION_INLINE void FuseSlabs(const FusionView& view,
                                   const SeenSlabs<Pack>& slabs,
