@@ -14,22 +14,6 @@ namespace {
 
 using internal::kLeafSize;
 
-/// Whether the block can be seen: its bounding sphere reaches into the image.
-bool InView(const PinholeCamera& camera, const Eigen::Vector3f& center,
-            float radius) {
-  if (center.z() < -radius) return false;
-  const float z = std::max(center.z(), radius);
-  const float margin_x = static_cast<float>(camera.fx) * radius / z;
-  const float margin_y = static_cast<float>(camera.fy) * radius / z;
-  const float u = static_cast<float>(camera.fx) * center.x() / z +
-                  static_cast<float>(camera.cx);
-  const float v = static_cast<float>(camera.fy) * center.y() / z +
-                  static_cast<float>(camera.cy);
-  return u > -2 * margin_x && v > -2 * margin_y &&
-         u < static_cast<float>(camera.width) + 2 * margin_x &&
-         v < static_cast<float>(camera.height) + 2 * margin_y;
-}
-
 /// What the blocks of a volume have in common.
 struct RigidMotion {
   RigidMotion(const Rigid3d& camera_from_canonical, double voxel_size)
@@ -47,28 +31,62 @@ struct RigidMotion {
   float steps[3][3];     // The same as FuseRigidBlocks() has it.
 };
 
-/// Where a block is, and what of it may change; false: nothing.
-bool FindBlock(const internal::FusionImage& image, const PinholeCamera& camera,
-               const RigidMotion& motion, const internal::LeafBuffers& leaf,
-               internal::RigidBlock* block) {
-  const Eigen::Vector3f origin(static_cast<float>(leaf.origin.x()),
-                               static_cast<float>(leaf.origin.y()),
-                               static_cast<float>(leaf.origin.z()));
-  Eigen::Map<Eigen::Vector3f> base(block->base);
-  base = motion.camera_from_canonical * (motion.voxel * origin);
-  const internal::ImageBox box =
-      internal::BoundBlock(image.view(), block->base, motion.steps);
-  if (!box.in_front) {
-    constexpr float kHalf = 0.5f * (kLeafSize - 1);
-    const Eigen::Vector3f center =
-        base + motion.axes * Eigen::Vector3f::Constant(kHalf);
-    if (!InView(camera, center, 1.8f * kHalf * motion.voxel)) return false;
+/// Whether the block can be seen: its bounding sphere reaches into the image.
+bool InView(const PinholeCamera& camera, const RigidMotion& motion,
+            const internal::RigidBlock& block) {
+  constexpr float kHalf = 0.5f * (kLeafSize - 1);
+  const Eigen::Vector3f center = Eigen::Map<const Eigen::Vector3f>(block.base) +
+                                 motion.axes * Eigen::Vector3f::Constant(kHalf);
+  const float radius = 1.8f * kHalf * motion.voxel;
+  if (center.z() < -radius) return false;
+  const float z = std::max(center.z(), radius);
+  const float margin_x = static_cast<float>(camera.fx) * radius / z;
+  const float margin_y = static_cast<float>(camera.fy) * radius / z;
+  const float u = static_cast<float>(camera.fx) * center.x() / z +
+                  static_cast<float>(camera.cx);
+  const float v = static_cast<float>(camera.fy) * center.y() / z +
+                  static_cast<float>(camera.cy);
+  return u > -2 * margin_x && v > -2 * margin_y &&
+         u < static_cast<float>(camera.width) + 2 * margin_x &&
+         v < static_cast<float>(camera.height) + 2 * margin_y;
+}
+
+constexpr std::size_t kBatch = 32;  // Blocks.
+
+/// Some blocks of a volume that may change.
+struct FoundBlocks {
+  internal::RigidBlock blocks[kBatch];
+  std::size_t leaves[kBatch];  // Their numbers in the volume.
+  int count = 0;
+};
+
+/// Finds those of the leaves from `begin` to `end` that may change.
+void FindBlocks(const internal::FusionImage& image, const PinholeCamera& camera,
+                const RigidMotion& motion,
+                const std::vector<internal::LeafBuffers>& leaves,
+                std::size_t begin, std::size_t end, FoundBlocks* found) {
+  const int asked = static_cast<int>(end - begin);
+  for (int i = 0; i < asked; ++i) {
+    const openvdb::Coord& origin = leaves[begin + i].origin;
+    Eigen::Map<Eigen::Vector3f> base(found->blocks[i].base);
+    base = motion.camera_from_canonical *
+           (motion.voxel * Eigen::Vector3f(static_cast<float>(origin.x()),
+                                           static_cast<float>(origin.y()),
+                                           static_cast<float>(origin.z())));
   }
-  block->part = image.MayChange(box);
-  block->leaf = internal::ToFused(leaf);
-  if (box.z_low >= block->part.farthest) return false;
-  if (box.in_front) image.Prefetch(box);
-  return true;
+  internal::ImageBox boxes[kBatch];
+  internal::BoundBlocks(image.view(), found->blocks, asked, motion.steps,
+                        boxes);
+  for (int i = 0; i < asked; ++i) {
+    internal::RigidBlock& block = found->blocks[found->count];
+    block = found->blocks[i];
+    if (!boxes[i].in_front && !InView(camera, motion, block)) continue;
+    block.part = image.MayChange(boxes[i]);
+    if (boxes[i].z_low >= block.part.farthest) continue;
+    if (boxes[i].in_front) image.Prefetch(boxes[i]);
+    block.leaf = internal::ToFused(leaves[begin + i]);
+    found->leaves[found->count++] = begin + i;
+  }
 }
 
 }  // namespace
@@ -80,22 +98,18 @@ void IntegrateRigid(const DepthObservation& observation,
   const RigidMotion motion(camera_from_canonical, volume->options().voxel_size);
   ++grids.time;
   const internal::FusionImage image(observation, volume->options(), grids.time);
-  constexpr std::size_t kBatch = 16;  // Blocks.
   const std::size_t batches = (grids.leaves.size() + kBatch - 1) / kBatch;
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
-    internal::RigidBlock blocks[kBatch];
-    std::size_t numbers[kBatch];
-    int count = 0;
+    FoundBlocks found;
     const std::size_t begin = batch * kBatch;
-    const std::size_t end = std::min(begin + kBatch, grids.leaves.size());
-    for (std::size_t i = begin; i < end; ++i) {
-      numbers[count] = i;
-      count += FindBlock(image, observation.camera, motion, grids.leaves[i],
-                         &blocks[count]);
-    }
-    internal::FuseRigidBlocks(image.view(), motion.steps, blocks, count);
-    for (int i = 0; i < count; ++i) {
-      if (blocks[i].changed) grids.RecordChange(numbers[i]);
+    FindBlocks(image, observation.camera, motion, grids.leaves, begin,
+               std::min(begin + kBatch, grids.leaves.size()), &found);
+    internal::FuseRigidBlocks(image.view(), motion.steps, found.blocks,
+                              found.count);
+    for (int i = 0; i < found.count; ++i) {
+      const internal::RigidBlock& block = found.blocks[i];
+      if (!block.changed) continue;
+      grids.RecordChange(found.leaves[i], block.has_inside);
     }
   });
 }

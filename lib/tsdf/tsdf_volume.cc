@@ -156,12 +156,9 @@ void TsdfVolume::Grids::Enter() {
   for (auto leaf = distance->tree().beginLeaf(); leaf; ++leaf) {
     Touch(leaf->origin());
     FreeUnobserved(leaves.back(), distance->background());
-    RecordChange(leaves.size() - 1);
+    RecordChange(leaves.size() - 1,
+                 internal::HasInside(internal::ToFused(leaves.back())));
   }
-}
-
-void TsdfVolume::Grids::RecordChange(std::size_t leaf) {
-  states[leaf] = {time, internal::HasInside(internal::ToFused(leaves[leaf]))};
 }
 
 TsdfVolume::TsdfVolume(const TsdfOptions& options)

@@ -11,6 +11,7 @@
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/geometry/camera.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/tsdf/pixel_role.h"
 
 namespace splitfusion {
 
@@ -27,13 +28,6 @@ struct TsdfOptions {
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
-};
-
-/// What a depth pixel may do to the volume of one surface.
-enum class PixelRole : std::uint8_t {
-  kNone = 0,   ///< Says nothing about this surface.
-  kCarve = 1,  ///< Of another surface: space in front of it is free.
-  kWrite = 2,  ///< Of this surface: its distance is written, and it carves.
 };
 
 /// One depth image, as a volume sees it; all images HxW of the camera.

@@ -285,7 +285,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
     const WarpedLattice warped = GatherLattice(
         leaves[i].origin, voxel, owners[i], own, lattices[i], warp);
     if (IntegrateLeaf(observation, image, voxel, warped, leaves[i])) {
-      grids.RecordChange(i);
+      grids.RecordChange(i, internal::HasInside(internal::ToFused(leaves[i])));
     }
   });
 }

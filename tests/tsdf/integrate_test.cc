@@ -70,10 +70,9 @@ void IntegrateEverything(const DepthObservation& seen,
                                           static_cast<float>(origin.z())));
     internal::RigidBlock block = {{base.x(), base.y(), base.z()},
                                   {kInfinity, false},
-                                  internal::ToFused(grids.leaves[i]),
-                                  false};
+                                  internal::ToFused(grids.leaves[i])};
     internal::FuseRigidBlocks(image.view(), steps, &block, 1);
-    if (block.changed) grids.RecordChange(i);
+    if (block.changed) grids.RecordChange(i, block.has_inside);
   }
 }
 

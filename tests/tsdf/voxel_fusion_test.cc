@@ -160,7 +160,7 @@ struct Placement {
 
   /// As a block that may change where `part` says.
   RigidBlock ToBlock(const FusedPart& part, Block* block) const {
-    return {{base.x(), base.y(), base.z()}, part, block->leaf(), false};
+    return {{base.x(), base.y(), base.z()}, part, block->leaf()};
   }
 };
 
@@ -192,11 +192,14 @@ struct Steps {
 };
 
 TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
-  int changed_blocks = 0, uncertain = 0;
+  int changed_blocks = 0, inside_blocks = 0, uncertain = 0;
   for (int round = 0; round < 300; ++round) {
     const Placement at = RandomPlacement(&random_);
     const Steps steps(at.steps);
-    const Block before = RandomBlock(&random_);
+    Block before = RandomBlock(&random_);
+    if (round % 2 == 0) {  // Nothing of it is inside, at first.
+      for (float& d : before.distance) d = std::abs(d) + 0.01f;
+    }
     Block block = before, expected = before;
     RigidBlock rigid = at.ToBlock(kAll, &block);
     FuseRigidBlocks(image_.view(), steps.rows, &rigid, 1);
@@ -209,9 +212,12 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
       }
     }
     EXPECT_TRUE(rigid.changed || block.distance == before.distance);
+    EXPECT_EQ(rigid.has_inside, rigid.changed && HasInside(block.leaf()));
+    inside_blocks += rigid.has_inside;
     changed_blocks += rigid.changed;
     // No block that changes may be passed over.
-    const ImageBox box = BoundBlock(image_.view(), at.base.data(), steps.rows);
+    ImageBox box;
+    BoundBlocks(image_.view(), &rigid, 1, steps.rows, &box);
     const FusedPart part = image_.MayChange(box);
     EXPECT_TRUE(box.z_low < part.farthest || block == before);
     // Nor any part of one.
@@ -222,6 +228,8 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
   }
   EXPECT_GT(changed_blocks, 50);
   EXPECT_LT(changed_blocks, 250);
+  EXPECT_GT(inside_blocks, 25);
+  EXPECT_LT(inside_blocks, changed_blocks);
   EXPECT_LT(uncertain, 300 * 512 / 100);
 }
 
@@ -232,8 +240,11 @@ TEST_F(VoxelFusion, AllProcessorsGiveTheSameNumbers) {
     const Placement at = RandomPlacement(&random_);
     const Steps steps(at.steps);
     // Both ways: every pixel tested, and what is known of the block used.
-    const FusedPart known = image_.MayChange(
-        BoundBlock(image_.view(), at.base.data(), steps.rows));
+    Block unused;
+    const RigidBlock bounded = at.ToBlock(kAll, &unused);
+    ImageBox box;
+    BoundBlocks(image_.view(), &bounded, 1, steps.rows, &box);
+    const FusedPart known = image_.MayChange(box);
     in_image += known.in_image;
     for (const FusedPart& part : {kAll, known}) {
       Block narrow = RandomBlock(&random_);
@@ -244,9 +255,45 @@ TEST_F(VoxelFusion, AllProcessorsGiveTheSameNumbers) {
       FuseRigidWide(image_.view(), steps.rows, &wide_block, 1);
       EXPECT_TRUE(narrow == wide) << "round " << round;
       EXPECT_EQ(narrow_block.changed, wide_block.changed);
+      EXPECT_EQ(narrow_block.has_inside, wide_block.has_inside);
     }
   }
   EXPECT_GT(in_image, 20);
+}
+
+TEST_F(VoxelFusion, BoxesHoldTheVoxelsOfEveryBlock) {
+  constexpr int kCount = 11;  // No multiple of the lanes.
+  const Placement all = RandomPlacement(&random_);
+  const Steps steps(all.steps);
+  Block unused;
+  std::vector<Placement> placements;
+  std::vector<RigidBlock> blocks;
+  for (int i = 0; i < kCount; ++i) {
+    placements.push_back({RandomPlacement(&random_).base, all.steps});
+    blocks.push_back(placements[i].ToBlock(kAll, &unused));
+  }
+  ImageBox boxes[kCount];
+  BoundBlocks(image_.view(), blocks.data(), kCount, steps.rows, boxes);
+  int in_front = 0;
+  for (int i = 0; i < kCount; ++i) {
+    Eigen::AlignedBox3d expected;  // Of u, v and z.
+    for (int k = 0; k < 512; ++k) {
+      const Eigen::Vector3d p = placements[i].At(k / 64, k / 8 % 8, k % 8);
+      const PinholeCamera& camera = seen_.camera;
+      expected.extend(Eigen::Vector3d(camera.fx * p.x() / p.z() + camera.cx,
+                                      camera.fy * p.y() / p.z() + camera.cy,
+                                      p.z()));
+    }
+    EXPECT_NEAR(boxes[i].z_low, expected.min().z(), 1e-5);
+    EXPECT_EQ(boxes[i].in_front, expected.min().z() > 0.05);
+    if (!boxes[i].in_front) continue;
+    ++in_front;
+    EXPECT_NEAR(boxes[i].u_low, expected.min().x(), 0.05);
+    EXPECT_NEAR(boxes[i].v_low, expected.min().y(), 0.05);
+    EXPECT_NEAR(boxes[i].u_high, expected.max().x(), 0.05);
+    EXPECT_NEAR(boxes[i].v_high, expected.max().y(), 0.05);
+  }
+  EXPECT_GT(in_front, 4);
 }
 
 /// Where a voxel is between the points of a lattice.
@@ -333,7 +380,7 @@ TEST_F(VoxelFusion, FreeSpaceThatIsKnownWellDoesNotChange) {
   block.color.fill(0);
   const float steps[3][3] = {{kVoxel, 0, 0}, {0, kVoxel, 0}, {0, 0, kVoxel}};
   const auto fuse_into = [&](const FusionImage& seen) {
-    RigidBlock rigid = {{0, 0, 1}, kAll, block.leaf(), false};
+    RigidBlock rigid = {{0, 0, 1}, kAll, block.leaf()};
     FuseRigidBlocks(seen.view(), steps, &rigid, 1);
     return rigid.changed;
   };

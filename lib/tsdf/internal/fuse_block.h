@@ -19,12 +19,28 @@ SPLITFUSION_INLINE FusedLeaf VoxelsFrom(const FusedLeaf& leaf, int offset) {
           leaf.color == nullptr ? nullptr : leaf.color + offset};
 }
 
+/// Caches that voxels are brought to.
+enum class Cache {
+  kSecond = 2,  ///< Large and not far: for voxels of the next block.
+  kFirst = 3,   ///< For those that come at once.
+};
+
 /// Asks the memory for the voxels that share a line of the cache with the
 /// first.
+template <Cache kCache>
 SPLITFUSION_INLINE void Prefetch(const FusedLeaf& from) {
-  __builtin_prefetch(from.distance, 1);
-  __builtin_prefetch(from.weight, 1);
-  if (from.color != nullptr) __builtin_prefetch(from.color, 1);
+  constexpr int kLocality = static_cast<int>(kCache);
+  __builtin_prefetch(from.distance, 1, kLocality);
+  __builtin_prefetch(from.weight, 1, kLocality);
+  if (from.color != nullptr) __builtin_prefetch(from.color, 1, kLocality);
+}
+
+/// The same for `count` packs.
+template <Cache kCache, typename Pack>
+SPLITFUSION_INLINE void PrefetchPacks(const FusedLeaf& from, int count) {
+  for (int i = 0; i < count; ++i) {
+    Prefetch<kCache>(VoxelsFrom(from, i * Pack::kCount));
+  }
 }
 
 /// Voxels of some slabs as the camera sees them, pack by pack.
@@ -66,7 +82,7 @@ SPLITFUSION_INLINE void FuseSlabs(const FusionView& view,
                                   typename Pack::Whole* changed) {
   SeenRow<Pack> rows[slabs.kPacks];
   for (int i = 0; i < slabs.kPacks; ++i) {
-    Prefetch(VoxelsFrom(next, i * Pack::kCount));
+    Prefetch<Cache::kFirst>(VoxelsFrom(next, i * Pack::kCount));
     SeeRow<Pack, kForeign>(view, slabs.pixel[i], slabs.z[i], slabs.foreign[i],
                            &rows[i]);
   }
@@ -124,20 +140,23 @@ struct RigidSlab {
 };
 
 /// FuseRigid() of one block; `kAllInside`: all of its voxels are in the image.
+/// `next`: the voxels after it, which the memory needs more time for than a few
+/// slabs take.
 template <typename Pack, bool kAllInside>
 SPLITFUSION_INLINE bool FuseRigidBlock(const FusionView& view,
                                        const RigidSlab<Pack>& slab,
                                        const SeenPoint& along_x,
-                                       const RigidBlock& block) {
+                                       const RigidBlock& block,
+                                       const FusedLeaf& next) {
   using Seen = SeenSlabs<Pack>;
   constexpr int kSlabs = Seen::kSlabs;
-  for (int i = 0; i < Seen::kPacks; ++i) {
-    Prefetch(VoxelsFrom(block.leaf, i * Pack::kCount));
-  }
+  PrefetchPacks<Cache::kFirst, Pack>(block.leaf, Seen::kPacks);
   const SeenPoint start(view, block.base);
   Seen seen;
   typename Pack::Whole changed = {};
   for (int x = 0; x < kSide; x += kSlabs) {
+    PrefetchPacks<Cache::kSecond, Pack>(VoxelsFrom(next, x * kSlab),
+                                        Seen::kPacks);
     const float z_begin =
         start.axes[2] + static_cast<float>(x) * along_x.axes[2];
     const float z_end =
@@ -154,11 +173,29 @@ SPLITFUSION_INLINE bool FuseRigidBlock(const FusionView& view,
       std::memcpy(seen.pixel[pack], &pixel, sizeof(pixel));
       seen.z[pack] = at.z;
     }
-    const int next = std::min(x + kSlabs, kSide - kSlabs);
+    const int soon = std::min(x + kSlabs, kSide - kSlabs);
     FuseSlabs<Pack, false>(view, seen, VoxelsFrom(block.leaf, x * kSlab),
-                           VoxelsFrom(block.leaf, next * kSlab), &changed);
+                           VoxelsFrom(block.leaf, soon * kSlab), &changed);
   }
   return Pack::Any(Pack::NotZero(changed));
+}
+
+/// See HasInside().
+template <typename Pack>
+SPLITFUSION_INLINE bool HasInsideBy(const FusedLeaf& leaf) {
+  using Real = typename Pack::Real;
+  for (int x = 0; x < kSide; ++x) {
+    bool is_inside = false;
+    for (int i = x * kSlab; i < (x + 1) * kSlab; i += Pack::kCount) {
+      Real distance, weight;
+      std::memcpy(&distance, leaf.distance + i, sizeof(distance));
+      std::memcpy(&weight, leaf.weight + i, sizeof(weight));
+      is_inside |=
+          Pack::Any(~Pack::Less(Real{}, distance) & Pack::Less(Real{}, weight));
+    }
+    if (is_inside) return true;
+  }
+  return false;
 }
 
 /// See FuseRigidBlocks().
@@ -170,10 +207,13 @@ SPLITFUSION_INLINE void FuseRigid(const FusionView& view,
   const SeenPoint along_x(view, steps[0]);
   for (int i = 0; i < count; ++i) {
     RigidBlock& block = blocks[i];
+    const FusedLeaf& next = blocks[std::min(i + 1, count - 1)].leaf;
     block.changed =
         block.part.in_image
-            ? FuseRigidBlock<Pack, true>(view, slab, along_x, block)
-            : FuseRigidBlock<Pack, false>(view, slab, along_x, block);
+            ? FuseRigidBlock<Pack, true>(view, slab, along_x, block, next)
+            : FuseRigidBlock<Pack, false>(view, slab, along_x, block, next);
+    // Asked while the block is in the cache.
+    block.has_inside = block.changed && HasInsideBy<Pack>(block.leaf);
   }
 }
 

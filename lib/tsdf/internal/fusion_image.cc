@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "splitfusion/lib/tsdf/internal/packed_color.h"
+#include "splitfusion/lib/tsdf/internal/fill_pixels.h"
 
 namespace splitfusion {
 namespace internal {
@@ -14,8 +14,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr FusionPixel kNoPixel = {-kInfinity, 0};
-constexpr auto kWrites = static_cast<std::uint8_t>(PixelRole::kWrite);
-constexpr auto kCarves = static_cast<std::uint8_t>(PixelRole::kCarve);
 
 /// Multiples of the golden section are spread evenly over 0..1, those of one
 /// voxel over time as well as those of neighbours.
@@ -23,12 +21,6 @@ float Dither(int time, int z) {
   constexpr double kGolden = 0.6180339887498949;
   const double phase = kGolden * (static_cast<double>(time) + 3 * z);
   return static_cast<float>(std::min(phase - std::floor(phase), 0.999));
-}
-
-/// The nearest packed colour, or one beside it.
-std::int32_t PackBytes(const cv::Vec3b& bgr) {
-  return PackColor(ChannelFromByte(bgr[2]), ChannelFromByte(bgr[1]),
-                   ChannelFromByte(bgr[0]));
 }
 
 }  // namespace
@@ -43,7 +35,7 @@ FusionImage::FusionImage(const DepthObservation& observation,
       static_cast<std::size_t>(camera.width) * camera.height;
   pixels_.reset(new FusionPixel[count + 1]);
   pixels_[count] = kNoPixel;
-  reach_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
+  reach_.resize(static_cast<std::size_t>(columns_) * rows_);
   if (options.has_color) {
     color_.reset(new std::int32_t[count + 1]);
     color_[count] = 0;
@@ -61,32 +53,27 @@ FusionImage::FusionImage(const DepthObservation& observation,
            static_cast<float>(options.max_weight),
            static_cast<float>(options.max_free_weight)};
   for (int i = 0; i < 16; ++i) view_.dither[i] = Dither(time, i % 8);
-  tbb::parallel_for(0, rows_, [&](int tile_row) {
-    const int end = std::min(camera.height, (tile_row + 1) * kTile);
-    for (int v = tile_row * kTile; v < end; ++v) FillRow(observation, v);
-  });
+  tbb::parallel_for(0, rows_,
+                    [&](int tile_row) { FillTiles(observation, tile_row); });
 }
 
-void FusionImage::FillRow(const DepthObservation& observation, int v) {
-  const float* depth = observation.depth[v];
-  const float* weight = observation.weight[v];
-  const std::uint8_t* role = observation.role[v];
-  FusionPixel* pixels = &pixels_[static_cast<std::size_t>(v) * view_.width];
-  float* reach = &reach_[static_cast<std::size_t>(v / kTile) * columns_];
-  for (int u = 0; u < view_.width; ++u) {
-    const bool writes = role[u] == kWrites;
-    const bool counts = (writes || role[u] == kCarves) && depth[u] > 0;
-    pixels[u] = {counts ? depth[u] : -kInfinity,
-                 counts ? (writes ? weight[u] : -weight[u]) : 0};
-    // Of a pixel that says nothing: - infinity.
-    const float reaches =
-        pixels[u].depth + (writes ? truncation_ : -truncation_);
-    reach[u / kTile] = std::max(reach[u / kTile], reaches);
+void FusionImage::FillTiles(const DepthObservation& observation, int tile_row) {
+  const int width = view_.width;
+  std::vector<float> reach(width, -kInfinity);  // Of columns.
+  const int end = std::min(view_.height, (tile_row + 1) * kTile);
+  for (int v = tile_row * kTile; v < end; ++v) {
+    const std::size_t row = static_cast<std::size_t>(v) * width;
+    FillPixels(observation.depth[v], observation.weight[v], observation.role[v],
+               width, truncation_, &pixels_[row], reach.data());
+    if (color_ == nullptr) continue;
+    FillColors(observation.color.ptr(v), width, &color_[row]);
   }
-  if (color_ == nullptr) return;
-  const cv::Vec3b* bgr = observation.color.ptr<cv::Vec3b>(v);
-  std::int32_t* color = &color_[static_cast<std::size_t>(v) * view_.width];
-  for (int u = 0; u < view_.width; ++u) color[u] = PackBytes(bgr[u]);
+  for (int column = 0; column < columns_; ++column) {
+    const int begin = column * kTile;
+    reach_[static_cast<std::size_t>(tile_row) * columns_ + column] =
+        *std::max_element(&reach[begin],
+                          reach.data() + std::min(begin + kTile, width));
+  }
 }
 
 FusedPart FusionImage::MayChange(const ImageBox& box) const {

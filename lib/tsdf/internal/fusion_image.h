@@ -37,7 +37,7 @@ class FusionImage {
  private:
   static constexpr int kTile = 8;  // Pixels.
 
-  void FillRow(const DepthObservation& observation, int v);
+  void FillTiles(const DepthObservation& observation, int tile_row);
 
   float truncation_;
   int columns_, rows_;  // Of tiles.

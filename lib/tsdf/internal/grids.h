@@ -60,8 +60,11 @@ struct TsdfVolume::Grids {
   /// becomes free space.
   void Enter();
 
-  /// Notes that the present integration changed a block.
-  void RecordChange(std::size_t leaf);
+  /// Notes that the present integration changed a block; `has_inside`: it now
+  /// HasInside().
+  void RecordChange(std::size_t leaf, bool has_inside) {
+    states[leaf] = {time, has_inside};
+  }
 };
 
 }  // namespace splitfusion

@@ -2,6 +2,9 @@
 
 #include "splitfusion/lib/tsdf/internal/image_box.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "splitfusion/lib/tsdf/internal/fuse_block.h"
 
 namespace splitfusion {
@@ -21,50 +24,67 @@ SPLITFUSION_INLINE float LowestOf(const Lanes& numbers) {
   return lowest[0];
 }
 
-/// Box around `count` times eight points.
-SPLITFUSION_INLINE ImageBox BoundPoints(const Points* points, int count) {
-  Lanes z_low = points[0].z;
-  Lanes u_low = Lanes{} + 1e30f, v_low = u_low;
-  Lanes minus_u_low = u_low, minus_v_low = u_low;
-  for (int i = 0; i < count; ++i) {
-    const Lanes inverse_z = 1 / points[i].z;
-    const Lanes u = points[i].zu * inverse_z;
-    const Lanes v = points[i].zv * inverse_z;
-    z_low = EightLanes::Min(points[i].z, z_low);
+/// Bounds of points, lane by lane.
+struct Bounds {
+  SPLITFUSION_INLINE void Add(const Points& points) {
+    const Lanes inverse_z = 1 / points.z;
+    const Lanes u = points.zu * inverse_z;
+    const Lanes v = points.zv * inverse_z;
+    z_low = EightLanes::Min(points.z, z_low);
     u_low = EightLanes::Min(u, u_low);
     v_low = EightLanes::Min(v, v_low);
     minus_u_low = EightLanes::Min(-u, minus_u_low);
     minus_v_low = EightLanes::Min(-v, minus_v_low);
   }
-  ImageBox box;
-  box.z_low = LowestOf(z_low);
-  box.in_front = box.z_low > kNear;
-  box.u_low = LowestOf(u_low);
-  box.v_low = LowestOf(v_low);
-  box.u_high = -LowestOf(minus_u_low);
-  box.v_high = -LowestOf(minus_v_low);
-  return box;
+
+  Lanes z_low = Lanes{} + 1e30f, u_low = z_low, v_low = z_low;
+  Lanes minus_u_low = z_low, minus_v_low = z_low;
+};
+
+SPLITFUSION_INLINE ImageBox Box(float z_low, float u_low, float v_low,
+                                float minus_u_low, float minus_v_low) {
+  return {z_low > kNear, z_low, u_low, -minus_u_low, v_low, -minus_v_low};
 }
 
 }  // namespace
 
 SPLITFUSION_VECTOR_CLONES
-ImageBox BoundBlock(const FusionView& view, const float base[3],
-                    const float steps[3][3]) {
+void BoundBlocks(const FusionView& view, const RigidBlock* blocks, int count,
+                 const float steps[3][3], ImageBox* boxes) {
   constexpr float kEnd = kSide - 1;
-  const Lanes x = {0, kEnd, 0, kEnd, 0, kEnd, 0, kEnd};
-  const Lanes y = {0, 0, kEnd, kEnd, 0, 0, kEnd, kEnd};
-  const Lanes z = {0, 0, 0, 0, kEnd, kEnd, kEnd, kEnd};
-  const SeenPoint start(view, base);
-  const SeenPoint along_x(view, steps[0]), along_y(view, steps[1]),
-      along_z(view, steps[2]);
-  Lanes corners[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    corners[axis] = start.axes[axis] + x * along_x.axes[axis] +
-                    y * along_y.axes[axis] + z * along_z.axes[axis];
+  constexpr int kCorners = 8;
+  float corners[kCorners][3] = {};  // From the base, as SeenPoint.
+  for (int k = 0; k < 3; ++k) {
+    const SeenPoint along(view, steps[k]);
+    for (int i = 0; i < kCorners; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        corners[i][axis] += (i >> k & 1) != 0 ? kEnd * along.axes[axis] : 0;
+      }
+    }
   }
-  const Points points = {corners[0], corners[1], corners[2]};
-  return BoundPoints(&points, 1);
+  for (int begin = 0; begin < count; begin += EightLanes::kCount) {
+    // Lanes are blocks; beyond the last one it is bounded again.
+    float bases[3][EightLanes::kCount];
+    for (int lane = 0; lane < EightLanes::kCount; ++lane) {
+      const int block = std::min(begin + lane, count - 1);
+      const SeenPoint base(view, blocks[block].base);
+      for (int axis = 0; axis < 3; ++axis) bases[axis][lane] = base.axes[axis];
+    }
+    Points base;
+    std::memcpy(&base.zu, bases[0], sizeof(base.zu));
+    std::memcpy(&base.zv, bases[1], sizeof(base.zv));
+    std::memcpy(&base.z, bases[2], sizeof(base.z));
+    Bounds bounds;
+    for (const auto& corner : corners) {
+      bounds.Add(
+          {base.zu + corner[0], base.zv + corner[1], base.z + corner[2]});
+    }
+    const int end = std::min(count - begin, EightLanes::kCount);
+    for (int i = 0; i < end; ++i) {
+      boxes[begin + i] = Box(bounds.z_low[i], bounds.u_low[i], bounds.v_low[i],
+                             bounds.minus_u_low[i], bounds.minus_v_low[i]);
+    }
+  }
 }
 
 SPLITFUSION_VECTOR_CLONES
@@ -81,7 +101,11 @@ ImageBox BoundLattice(const FusionView& view,
     pack.zv[lane] = point.axes[1];
     pack.z[lane] = point.axes[2];
   }
-  return BoundPoints(points, kPacks);
+  Bounds bounds;
+  for (const Points& pack : points) bounds.Add(pack);
+  return Box(LowestOf(bounds.z_low), LowestOf(bounds.u_low),
+             LowestOf(bounds.v_low), LowestOf(bounds.minus_u_low),
+             LowestOf(bounds.minus_v_low));
 }
 
 }  // namespace internal

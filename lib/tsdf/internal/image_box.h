@@ -13,9 +13,9 @@ struct ImageBox {
   float u_low = 0, u_high = 0, v_low = 0, v_high = 0;  ///< Pixels.
 };
 
-/// Box around the voxels of a block, given as FuseRigidBlocks() has it.
-ImageBox BoundBlock(const FusionView& view, const float base[3],
-                    const float steps[3][3]);
+/// Boxes around the voxels of blocks, of which only the bases are asked.
+void BoundBlocks(const FusionView& view, const RigidBlock* blocks, int count,
+                 const float steps[3][3], ImageBox* boxes);
 
 /// Box around the points of a lattice (camera frame, metres).
 ImageBox BoundLattice(const FusionView& view,

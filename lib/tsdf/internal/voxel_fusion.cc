@@ -96,19 +96,7 @@ bool FuseWarpedLeaf(const FusionView& view,
 }
 
 SPLITFUSION_WIDEST_VECTOR_CLONES
-bool HasInside(const FusedLeaf& leaf) {
-  for (int x = 0; x < kSide; ++x) {
-    Flags inside = {};
-    for (int i = x * kSlab; i < (x + 1) * kSlab; i += EightLanes::kCount) {
-      Lanes distance, weight;
-      std::memcpy(&distance, leaf.distance + i, sizeof(distance));
-      std::memcpy(&weight, leaf.weight + i, sizeof(weight));
-      inside |= (distance <= 0) & (weight > 0);
-    }
-    if (EightLanes::Any(inside)) return true;
-  }
-  return false;
-}
+bool HasInside(const FusedLeaf& leaf) { return HasInsideBy<EightLanes>(leaf); }
 
 }  // namespace internal
 }  // namespace splitfusion

@@ -52,10 +52,12 @@ struct RigidBlock {
   FusedLeaf leaf;
   /// Whether a mesh may show it: a distance, a colour, or a weight below
   /// kFirmWeight is another one.
-  bool changed;
+  bool changed = false;
+  bool has_inside = false;  ///< HasInside(), if it changed.
 };
 
-/// Fuses into blocks one after the other; sets `changed`.
+/// Fuses into blocks one after the other; sets `changed` and
+/// `has_inside`.
 void FuseRigidBlocks(const FusionView& view, const float steps[3][3],
                      RigidBlock* blocks, int count);
 

@@ -1,0 +1,25 @@
+#ifndef SPLITFUSION_LIB_TSDF_INTERNAL_FILL_PIXELS_H_
+#define SPLITFUSION_LIB_TSDF_INTERNAL_FILL_PIXELS_H_
+
+#include <cstdint>
+
+#include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
+
+namespace splitfusion {
+namespace internal {
+
+/// Records of a row of pixels, given their depths in metres (0 = none),
+/// confidences and PixelRole's; raises `reach` to the depth at which each can
+/// change anything, which is - infinity if it cannot.
+void FillPixels(const float* depth, const float* weight,
+                const std::uint8_t* role, int count, float truncation,
+                FusionPixel* pixels, float* reach);
+
+/// Packed colours of a row of pixels, given blue, green and red: the nearest
+/// ones, or some beside them.
+void FillColors(const std::uint8_t* bgr, int count, std::int32_t* colors);
+
+}  // namespace internal
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_TSDF_INTERNAL_FILL_PIXELS_H_
