@@ -1,12 +1,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "splitfusion/lib/tsdf/check_observation.h"
 #include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
+#include "splitfusion/lib/tsdf/internal/image_box.h"
+#include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
 namespace splitfusion {
@@ -60,7 +61,8 @@ struct FoundBlocks {
   int count = 0;
 };
 
-/// Finds those of the leaves from `begin` to `end` that may change.
+/// Finds those of the leaves from `begin` to `end`, at most kBatch, that may
+/// change; `found`: none yet.
 void FindBlocks(const internal::FusionImage& image, const PinholeCamera& camera,
                 const RigidMotion& motion,
                 const std::vector<internal::LeafBuffers>& leaves,
@@ -79,7 +81,7 @@ void FindBlocks(const internal::FusionImage& image, const PinholeCamera& camera,
                         boxes);
   for (int i = 0; i < asked; ++i) {
     internal::RigidBlock& block = found->blocks[found->count];
-    block = found->blocks[i];
+    std::copy_n(found->blocks[i].base, 3, block.base);
     if (!boxes[i].in_front && !InView(camera, motion, block)) continue;
     block.part = image.MayChange(boxes[i]);
     if (boxes[i].z_low >= block.part.farthest) continue;

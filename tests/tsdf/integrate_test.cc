@@ -97,10 +97,15 @@ void ExpectSame(const TsdfVolume& a, const TsdfVolume& b) {
 TEST(IntegrateRigid, WhatIsPassedOverWouldNotHaveChanged) {
   std::mt19937 random(5);
   TsdfVolume volume = BlocksAllAround(), everything = BlocksAllAround();
+  // Its tiles and batches of blocks are not all whole.
+  PinholeCamera camera = SmallCamera();
+  camera.width -= 3;
+  camera.height -= 3;
+  ASSERT_NE(volume.leaf_count() % 32, 0u);
   std::uniform_int_distribution<int> die(0, 9);
   for (int round = 0; round < 20; ++round) {
-    DepthObservation seen = ObserveAll(
-        SmallCamera(), PlaneDepth(SmallCamera(), {0.3, 0.1, 0.9}, 1.0));
+    DepthObservation seen =
+        ObserveAll(camera, PlaneDepth(camera, {0.3, 0.1, 0.9}, 1.0));
     for (std::uint8_t& role : seen.role) {
       role = static_cast<std::uint8_t>(die(random) < 2 ? PixelRole::kCarve
                                                        : PixelRole::kWrite);
@@ -116,6 +121,17 @@ TEST(IntegrateRigid, WhatIsPassedOverWouldNotHaveChanged) {
   }
   EXPECT_GT(changed, 50);
   EXPECT_LT(changed, static_cast<int>(volume.leaf_count()) - 50);
+}
+
+TEST(IntegrateRigid, BehindTheCameraNothingChanges) {
+  TsdfVolume volume = BlocksAllAround();
+  Rigid3d pose = Rigid3d::Identity();
+  pose.translation().z() = -5;
+  IntegrateRigid(ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1)), pose,
+                 &volume);
+  for (const internal::LeafState& state : volume.grids().states) {
+    EXPECT_LT(state.changed, volume.grids().time);
+  }
 }
 
 /// Grey of the voxel nearest to the middle of a wall, after many frames.

@@ -37,6 +37,14 @@ struct Block {
   }
 };
 
+/// HasInside(), voxel by voxel.
+bool IsAnyInside(const Block& block) {
+  for (int i = 0; i < 512; ++i) {
+    if (block.distance[i] <= 0 && block.weight[i] > 0) return true;
+  }
+  return false;
+}
+
 Block RandomBlock(std::mt19937* random) {
   std::uniform_real_distribution<float> unit(0, 1);
   Block block;
@@ -212,7 +220,7 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
       }
     }
     EXPECT_TRUE(rigid.changed || block.distance == before.distance);
-    EXPECT_EQ(rigid.has_inside, rigid.changed && HasInside(block.leaf()));
+    EXPECT_EQ(rigid.has_inside, rigid.changed && IsAnyInside(block));
     inside_blocks += rigid.has_inside;
     changed_blocks += rigid.changed;
     // No block that changes may be passed over.
@@ -270,6 +278,9 @@ TEST_F(VoxelFusion, BoxesHoldTheVoxelsOfEveryBlock) {
   std::vector<RigidBlock> blocks;
   for (int i = 0; i < kCount; ++i) {
     placements.push_back({RandomPlacement(&random_).base, all.steps});
+    // Some around the camera, some behind it.
+    if (i % 5 == 1) placements[i].base.z() = 0.03f;
+    if (i % 5 == 3) placements[i].base.z() = -0.5f;
     blocks.push_back(placements[i].ToBlock(kAll, &unused));
   }
   ImageBox boxes[kCount];
@@ -294,6 +305,22 @@ TEST_F(VoxelFusion, BoxesHoldTheVoxelsOfEveryBlock) {
     EXPECT_NEAR(boxes[i].v_high, expected.max().y(), 0.05);
   }
   EXPECT_GT(in_front, 4);
+  EXPECT_LT(in_front, kCount - 3);
+}
+
+TEST(HasInside, OneObservedVoxelIsEnough) {
+  Block block;
+  block.distance.fill(0.01f);
+  block.weight.fill(1);
+  EXPECT_FALSE(HasInside(block.leaf()));
+  for (int i = 0; i < 512; ++i) {
+    block.distance[i] = i % 2 == 0 ? 0.0f : -0.01f;
+    EXPECT_TRUE(HasInside(block.leaf())) << i;
+    block.weight[i] = 0;  // Never observed.
+    EXPECT_FALSE(HasInside(block.leaf())) << i;
+    block.weight[i] = 1;
+    block.distance[i] = 0.01f;
+  }
 }
 
 /// Where a voxel is between the points of a lattice.

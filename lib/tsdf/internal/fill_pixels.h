@@ -8,9 +8,9 @@
 namespace splitfusion {
 namespace internal {
 
-/// Records of a row of pixels, given their depths in metres (0 = none),
-/// confidences and PixelRole's; raises `reach` to the depth at which each can
-/// change anything, which is - infinity if it cannot.
+/// Records of a row of pixels, given depths (metres, 0 = none), confidences and
+/// roles (PixelRole). Raises the `reach` of each to the z-depth up to which it
+/// changes voxels, if it does. `truncation`, `reach`: metres.
 void FillPixels(const float* depth, const float* weight,
                 const std::uint8_t* role, int count, float truncation,
                 FusionPixel* pixels, float* reach);

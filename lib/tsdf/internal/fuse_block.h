@@ -2,6 +2,8 @@
 #define SPLITFUSION_LIB_TSDF_INTERNAL_FUSE_BLOCK_H_
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 
 #include "splitfusion/lib/tsdf/internal/fuse_row.h"
 #include "splitfusion/lib/tsdf/internal/lanes.h"
@@ -19,9 +21,9 @@ SPLITFUSION_INLINE FusedLeaf VoxelsFrom(const FusedLeaf& leaf, int offset) {
           leaf.color == nullptr ? nullptr : leaf.color + offset};
 }
 
-/// Caches that voxels are brought to.
+/// Caches that voxels are brought to, as __builtin_prefetch() calls them.
 enum class Cache {
-  kSecond = 2,  ///< Large and not far: for voxels of the next block.
+  kSecond = 2,  ///< Larger: for voxels of the next block.
   kFirst = 3,   ///< For those that come at once.
 };
 
@@ -33,14 +35,6 @@ SPLITFUSION_INLINE void Prefetch(const FusedLeaf& from) {
   __builtin_prefetch(from.distance, 1, kLocality);
   __builtin_prefetch(from.weight, 1, kLocality);
   if (from.color != nullptr) __builtin_prefetch(from.color, 1, kLocality);
-}
-
-/// The same for `count` packs.
-template <Cache kCache, typename Pack>
-SPLITFUSION_INLINE void PrefetchPacks(const FusedLeaf& from, int count) {
-  for (int i = 0; i < count; ++i) {
-    Prefetch<kCache>(VoxelsFrom(from, i * Pack::kCount));
-  }
 }
 
 /// Voxels of some slabs as the camera sees them, pack by pack.
@@ -55,6 +49,14 @@ struct SeenSlabs {
   /// With a minus: only carved. Not set without kForeign.
   typename Pack::Whole foreign[kPacks];
 };
+
+/// Asks the memory for as many voxels, from the first on.
+template <Cache kCache, typename Pack>
+SPLITFUSION_INLINE void PrefetchSlabs(const FusedLeaf& from) {
+  for (int i = 0; i < SeenSlabs<Pack>::kPacks; ++i) {
+    Prefetch<kCache>(VoxelsFrom(from, i * Pack::kCount));
+  }
+}
 
 /// Fuses what has been looked up; `kAsksChanges`: see FuseRow().
 template <typename Pack, bool kAsksChanges>
@@ -140,8 +142,8 @@ struct RigidSlab {
 };
 
 /// FuseRigid() of one block; `kAllInside`: all of its voxels are in the image.
-/// `next`: the voxels after it, which the memory needs more time for than a few
-/// slabs take.
+/// `next`: the next block's voxels, or again its own, which the memory needs
+/// more time for than a few slabs take.
 template <typename Pack, bool kAllInside>
 SPLITFUSION_INLINE bool FuseRigidBlock(const FusionView& view,
                                        const RigidSlab<Pack>& slab,
@@ -150,13 +152,12 @@ SPLITFUSION_INLINE bool FuseRigidBlock(const FusionView& view,
                                        const FusedLeaf& next) {
   using Seen = SeenSlabs<Pack>;
   constexpr int kSlabs = Seen::kSlabs;
-  PrefetchPacks<Cache::kFirst, Pack>(block.leaf, Seen::kPacks);
+  PrefetchSlabs<Cache::kFirst, Pack>(block.leaf);
   const SeenPoint start(view, block.base);
   Seen seen;
   typename Pack::Whole changed = {};
   for (int x = 0; x < kSide; x += kSlabs) {
-    PrefetchPacks<Cache::kSecond, Pack>(VoxelsFrom(next, x * kSlab),
-                                        Seen::kPacks);
+    PrefetchSlabs<Cache::kSecond, Pack>(VoxelsFrom(next, x * kSlab));
     const float z_begin =
         start.axes[2] + static_cast<float>(x) * along_x.axes[2];
     const float z_end =

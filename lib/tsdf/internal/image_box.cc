@@ -24,26 +24,28 @@ SPLITFUSION_INLINE float LowestOf(const Lanes& numbers) {
   return lowest[0];
 }
 
-/// Bounds of points, lane by lane.
+/// Lowest z, u, v, -u and -v of points, lane by lane.
 struct Bounds {
+  static constexpr int kCount = 5;
+
   SPLITFUSION_INLINE void Add(const Points& points) {
     const Lanes inverse_z = 1 / points.z;
     const Lanes u = points.zu * inverse_z;
     const Lanes v = points.zv * inverse_z;
-    z_low = EightLanes::Min(points.z, z_low);
-    u_low = EightLanes::Min(u, u_low);
-    v_low = EightLanes::Min(v, v_low);
-    minus_u_low = EightLanes::Min(-u, minus_u_low);
-    minus_v_low = EightLanes::Min(-v, minus_v_low);
+    const Lanes numbers[kCount] = {points.z, u, v, -u, -v};
+    for (int k = 0; k < kCount; ++k) {
+      lowest[k] = EightLanes::Min(numbers[k], lowest[k]);
+    }
   }
 
-  Lanes z_low = Lanes{} + 1e30f, u_low = z_low, v_low = z_low;
-  Lanes minus_u_low = z_low, minus_v_low = z_low;
+  Lanes lowest[kCount] = {Lanes{} + 1e30f, Lanes{} + 1e30f, Lanes{} + 1e30f,
+                          Lanes{} + 1e30f, Lanes{} + 1e30f};
 };
 
-SPLITFUSION_INLINE ImageBox Box(float z_low, float u_low, float v_low,
-                                float minus_u_low, float minus_v_low) {
-  return {z_low > kNear, z_low, u_low, -minus_u_low, v_low, -minus_v_low};
+/// The box that one lane of Bounds makes.
+SPLITFUSION_INLINE ImageBox Box(const float lowest[Bounds::kCount]) {
+  return {lowest[0] > kNear, lowest[0], lowest[1],
+          -lowest[3],        lowest[2], -lowest[4]};
 }
 
 }  // namespace
@@ -66,9 +68,9 @@ void BoundBlocks(const FusionView& view, const RigidBlock* blocks, int count,
     // Lanes are blocks; beyond the last one it is bounded again.
     float bases[3][EightLanes::kCount];
     for (int lane = 0; lane < EightLanes::kCount; ++lane) {
-      const int block = std::min(begin + lane, count - 1);
-      const SeenPoint base(view, blocks[block].base);
-      for (int axis = 0; axis < 3; ++axis) bases[axis][lane] = base.axes[axis];
+      const RigidBlock& block = blocks[std::min(begin + lane, count - 1)];
+      const SeenPoint start(view, block.base);
+      for (int axis = 0; axis < 3; ++axis) bases[axis][lane] = start.axes[axis];
     }
     Points base;
     std::memcpy(&base.zu, bases[0], sizeof(base.zu));
@@ -80,9 +82,11 @@ void BoundBlocks(const FusionView& view, const RigidBlock* blocks, int count,
           {base.zu + corner[0], base.zv + corner[1], base.z + corner[2]});
     }
     const int end = std::min(count - begin, EightLanes::kCount);
-    for (int i = 0; i < end; ++i) {
-      boxes[begin + i] = Box(bounds.z_low[i], bounds.u_low[i], bounds.v_low[i],
-                             bounds.minus_u_low[i], bounds.minus_v_low[i]);
+    for (int lane = 0; lane < end; ++lane) {
+      float lowest[Bounds::kCount];
+      for (int k = 0; k < Bounds::kCount; ++k)
+        lowest[k] = bounds.lowest[k][lane];
+      boxes[begin + lane] = Box(lowest);
     }
   }
 }
@@ -103,9 +107,11 @@ ImageBox BoundLattice(const FusionView& view,
   }
   Bounds bounds;
   for (const Points& pack : points) bounds.Add(pack);
-  return Box(LowestOf(bounds.z_low), LowestOf(bounds.u_low),
-             LowestOf(bounds.v_low), LowestOf(bounds.minus_u_low),
-             LowestOf(bounds.minus_v_low));
+  float lowest[Bounds::kCount];
+  for (int k = 0; k < Bounds::kCount; ++k) {
+    lowest[k] = LowestOf(bounds.lowest[k]);
+  }
+  return Box(lowest);
 }
 
 }  // namespace internal
