@@ -13,7 +13,8 @@ namespace {
 
 using Points = SeenVoxels<EightLanes>;
 
-SPLITFUSION_INLINE float LowestOf(const Lanes& numbers) {
+/// The lowest of eight numbers, eight times.
+SPLITFUSION_INLINE Lanes Lowest(const Lanes& numbers) {
   Lanes lowest = numbers;
   constexpr Flags kPartners[] = {{4, 5, 6, 7, 0, 1, 2, 3},
                                  {2, 3, 0, 1, 6, 7, 4, 5},
@@ -21,7 +22,7 @@ SPLITFUSION_INLINE float LowestOf(const Lanes& numbers) {
   for (const Flags& partner : kPartners) {
     lowest = EightLanes::Min(lowest, __builtin_shuffle(lowest, partner));
   }
-  return lowest[0];
+  return lowest;
 }
 
 /// Lowest z, u, v, -u and -v of points, lane by lane.
@@ -38,14 +39,50 @@ struct Bounds {
     }
   }
 
+  /// Of the points of one lane.
+  SPLITFUSION_INLINE ImageBox Box(int lane) const {
+    return {lowest[0][lane] > kNear, lowest[0][lane], lowest[1][lane],
+            -lowest[3][lane],        lowest[2][lane], -lowest[4][lane]};
+  }
+
   Lanes lowest[kCount] = {Lanes{} + 1e30f, Lanes{} + 1e30f, Lanes{} + 1e30f,
                           Lanes{} + 1e30f, Lanes{} + 1e30f};
 };
 
-/// The box that one lane of Bounds makes.
-SPLITFUSION_INLINE ImageBox Box(const float lowest[Bounds::kCount]) {
-  return {lowest[0] > kNear, lowest[0], lowest[1],
-          -lowest[3],        lowest[2], -lowest[4]};
+/// Corners of a block, counted from its base, as SeenVoxels.
+struct BlockCorners {
+  SPLITFUSION_INLINE BlockCorners(const FusionView& view,
+                                  const float steps[3][3]) {
+    constexpr float kEnd = kSide - 1;
+    for (int k = 0; k < 3; ++k) {
+      const SeenPoint along(view, steps[k]);
+      for (int i = 0; i < kCount; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+          offsets[i][axis] += (i >> k & 1) != 0 ? kEnd * along.axes[axis] : 0;
+        }
+      }
+    }
+  }
+
+  static constexpr int kCount = 8;
+  float offsets[kCount][3] = {};
+};
+
+/// Bases of eight blocks from one on; beyond the last one that one again.
+SPLITFUSION_INLINE Points Bases(const FusionView& view,
+                                const RigidBlock* blocks, int begin,
+                                int count) {
+  float axes[3][EightLanes::kCount];
+  for (int lane = 0; lane < EightLanes::kCount; ++lane) {
+    const RigidBlock& block = blocks[std::min(begin + lane, count - 1)];
+    const SeenPoint base(view, block.base);
+    for (int axis = 0; axis < 3; ++axis) axes[axis][lane] = base.axes[axis];
+  }
+  Points bases;
+  std::memcpy(&bases.zu, axes[0], sizeof(bases.zu));
+  std::memcpy(&bases.zv, axes[1], sizeof(bases.zv));
+  std::memcpy(&bases.z, axes[2], sizeof(bases.z));
+  return bases;
 }
 
 }  // namespace
@@ -53,40 +90,17 @@ SPLITFUSION_INLINE ImageBox Box(const float lowest[Bounds::kCount]) {
 SPLITFUSION_VECTOR_CLONES
 void BoundBlocks(const FusionView& view, const RigidBlock* blocks, int count,
                  const float steps[3][3], ImageBox* boxes) {
-  constexpr float kEnd = kSide - 1;
-  constexpr int kCorners = 8;
-  float corners[kCorners][3] = {};  // From the base, as SeenPoint.
-  for (int k = 0; k < 3; ++k) {
-    const SeenPoint along(view, steps[k]);
-    for (int i = 0; i < kCorners; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        corners[i][axis] += (i >> k & 1) != 0 ? kEnd * along.axes[axis] : 0;
-      }
-    }
-  }
+  const BlockCorners corners(view, steps);
   for (int begin = 0; begin < count; begin += EightLanes::kCount) {
-    // Lanes are blocks; beyond the last one it is bounded again.
-    float bases[3][EightLanes::kCount];
-    for (int lane = 0; lane < EightLanes::kCount; ++lane) {
-      const RigidBlock& block = blocks[std::min(begin + lane, count - 1)];
-      const SeenPoint start(view, block.base);
-      for (int axis = 0; axis < 3; ++axis) bases[axis][lane] = start.axes[axis];
-    }
-    Points base;
-    std::memcpy(&base.zu, bases[0], sizeof(base.zu));
-    std::memcpy(&base.zv, bases[1], sizeof(base.zv));
-    std::memcpy(&base.z, bases[2], sizeof(base.z));
+    const Points bases = Bases(view, blocks, begin, count);
     Bounds bounds;
-    for (const auto& corner : corners) {
+    for (const auto& offset : corners.offsets) {
       bounds.Add(
-          {base.zu + corner[0], base.zv + corner[1], base.z + corner[2]});
+          {bases.zu + offset[0], bases.zv + offset[1], bases.z + offset[2]});
     }
     const int end = std::min(count - begin, EightLanes::kCount);
     for (int lane = 0; lane < end; ++lane) {
-      float lowest[Bounds::kCount];
-      for (int k = 0; k < Bounds::kCount; ++k)
-        lowest[k] = bounds.lowest[k][lane];
-      boxes[begin + lane] = Box(lowest);
+      boxes[begin + lane] = bounds.Box(lane);
     }
   }
 }
@@ -107,11 +121,8 @@ ImageBox BoundLattice(const FusionView& view,
   }
   Bounds bounds;
   for (const Points& pack : points) bounds.Add(pack);
-  float lowest[Bounds::kCount];
-  for (int k = 0; k < Bounds::kCount; ++k) {
-    lowest[k] = LowestOf(bounds.lowest[k]);
-  }
-  return Box(lowest);
+  for (Lanes& numbers : bounds.lowest) numbers = Lowest(numbers);
+  return bounds.Box(0);
 }
 
 }  // namespace internal
