@@ -48,7 +48,7 @@ DEFINE_int32(linear_iterations, 100,
              "Conjugate gradient iterations of a step at most (gn_pcg, cgnr).");
 DEFINE_double(eta, 0.01,
               "Relative accuracy of a step's linear solve (gn_pcg, cgnr).");
-DEFINE_double(function_tolerance, 1e-5,
+DEFINE_double(function_tolerance, 1e-10,
               "Converged when the cost changes by less, relative.");
 DEFINE_double(gradient_tolerance, 1e-10,
               "Converged when the gradient's largest entry is below.");

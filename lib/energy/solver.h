@@ -28,8 +28,10 @@ struct SolverOptions {
   int max_iterations = 1;  ///< Per association: a new one tells more.
   int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.
   double eta = 0.01;  ///< For cgnr and gn_pcg: relative accuracy of a step.
-  /// Converged when the cost changes by less, relative.
-  double function_tolerance = 1e-5;
+  /// Converged when the cost changes by less, relative. Ceres does not take
+  /// such a step. With one iteration per association every step counts: slow
+  /// limbs hardly change the cost.
+  double function_tolerance = 1e-10;
   /// Converged when the gradient's largest entry is below.
   double gradient_tolerance = 1e-10;
   /// Converged when the step is below (radians, metres).

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "splitfusion/lib/energy/solver.h"
 #include "support/custom_energy.h"
 #include "support/sample_correspondences.h"
@@ -57,6 +59,33 @@ TEST_P(EverySolver, FindsTheSameMinimum) {
     EXPECT_LT((graph.motions[i].translation - reference.motions[i].translation)
                   .norm(),
               1e-5);
+  }
+}
+
+TEST(GnCholesky, StepsAreThoseOfCeresHoweverSmall) {
+  const TriangleMesh mesh = CornerMesh(0.02);
+  const Energy energy = EnergyWithCustomTerm();
+  SolverOptions options;  // One iteration per association.
+  options.solver = "ceres";
+  DeformationGraph expected = CoverWithNodes(mesh, 0.04), graph = expected;
+  for (int round = 0; round < 12; ++round) {
+    // The further, the less is left to be done.
+    const double bend = 1 - std::pow(0.1, 1 + round / 3);
+    const auto correspondences = PerfectAssociation(
+        mesh, expected,
+        [&](const Eigen::Vector3d& p) { return Bend(p, 1, bend); });
+    const SurfaceProblem problem{energy, correspondences, PinholeCamera()};
+    options.solver = "ceres";
+    Minimize(problem, options, &expected);
+    options.solver = "gn_cholesky";
+    const SolverReport report = Minimize(problem, options, &graph);
+    EXPECT_TRUE(report.iterations.back().accepted) << round;
+    for (int i = 0; i < graph.size(); ++i) {
+      EXPECT_LT((graph.motions[i].translation - expected.motions[i].translation)
+                    .norm(),
+                1e-7)
+          << "round " << round << ", node " << i;
+    }
   }
 }
 
