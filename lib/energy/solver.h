@@ -29,8 +29,8 @@ struct SolverOptions {
   int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.
   double eta = 0.01;  ///< For cgnr and gn_pcg: relative accuracy of a step.
   /// Converged when the cost changes by less, relative. Ceres does not take
-  /// such a step. With one iteration per association every step counts: slow
-  /// limbs hardly change the cost.
+  /// such a step, the other solvers do: with one iteration per association it
+  /// is to be so small that they agree.
   double function_tolerance = 1e-10;
   /// Converged when the gradient's largest entry is below.
   double gradient_tolerance = 1e-10;
