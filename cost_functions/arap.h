@@ -4,7 +4,9 @@
 #include <ceres/rotation.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "splitfusion/lib/energy/energy_term.h"
@@ -60,6 +62,14 @@ struct Arap {
     edge += (anneal - 1) / anneal * (turn * was - edge);
   }
 
+  /// A part of `share` of the prior holds the shape that the edge had when it
+  /// was last seen, DeformationGraph::seen_edges, instead of the rest shape: as
+  /// in HoldBend(), the mean edge replaces q. `k`: of the neighbours of i.
+  void HoldSeen(const DeformationGraph& graph, double share, int i,
+                std::size_t k) {
+    edge += share * (graph.motions[i].rotation * graph.seen_edges[i][k] - edge);
+  }
+
   /// `twists`: {twist_i, twist_j}.
   template <typename T>
   bool operator()(T const* const* twists, T* residual) const {
@@ -78,25 +88,51 @@ struct Arap {
 /// E_prior of Eq. 6 over all directed edges; absent on a one-node graph. While
 /// it is annealed, what it weighs more holds the bend of the frame before, if
 /// that is known.
+///
+/// Where nothing is seen there is nothing but the prior, and it would take a
+/// bent limb back to its rest shape as soon as another one hides it. Edges of
+/// which an end is not seen hold the shape that was last seen instead.
 class ArapTerm : public EnergyTerm {
  public:
+  /// A node that so many points hang on counts as seen, one with fewer in part.
+  static constexpr double kSeenPoints = 4;
+
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
+    const DeformationGraph& graph = input.graph;
+    const bool holds = graph.seen_edges.size() == graph.neighbors.size();
+    const std::vector<double> seen = SeenShares(input);
     std::vector<std::vector<int>> nodes;
     std::vector<Arap> functors;
-    for (int i = 0; i < input.graph.size(); ++i) {
-      for (const int j : input.graph.neighbors[i]) {
+    for (int i = 0; i < graph.size(); ++i) {
+      for (std::size_t k = 0; k < graph.neighbors[i].size(); ++k) {
+        const int j = graph.neighbors[i][k];
         nodes.push_back({i, j});
-        functors.push_back(Arap::Make(input.graph, i, j));
+        Arap& arap = functors.emplace_back(Arap::Make(graph, i, j));
+        const double hidden = 1 - std::min(seen[i], seen[j]);
+        if (holds) arap.HoldSeen(graph, hidden, i, k);
         if (input.before == nullptr) continue;
-        functors.back().HoldBend(input.graph, *input.before, input.anneal, i,
-                                 j);
+        arap.HoldBend(graph, *input.before, input.anneal, i, j);
       }
     }
     sink->AddNodes(nodes, functors);
   }
 
   bool is_prior() const override { return true; }
+
+ private:
+  /// For every node, from 0 to 1, how far the correspondences tell where it is.
+  static std::vector<double> SeenShares(const EnergyInput& input) {
+    std::vector<double> shares(input.graph.size(), 0.0);
+    for (const Correspondence& c : input.correspondences) {
+      const Skinning& skinning = c.model.skinning;
+      for (int k = 0; k < skinning.count; ++k) {
+        shares[skinning.nodes[k]] += skinning.weights[k] / kSeenPoints;
+      }
+    }
+    for (double& share : shares) share = std::min(1.0, share);
+    return shares;
+  }
 };
 
 }  // namespace splitfusion

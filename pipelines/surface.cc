@@ -10,6 +10,7 @@
 #include "splitfusion/lib/association/canonical_places.h"
 #include "splitfusion/lib/association/observe_surface.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/deformation/seen_edges.h"
 #include "splitfusion/lib/geometry/mesh_pieces.h"
 
 namespace splitfusion {
@@ -184,6 +185,23 @@ void Surface::RecordMotions(int frame, bool tracked, const RecentViews& views) {
   while (static_cast<int>(graph_.first_seen.size()) < graph_.size()) {
     graph_.first_seen.push_back(
         FirstSeen(static_cast<int>(graph_.first_seen.size()), views));
+  }
+  if (kind_ == SurfaceKind::kRigid) return;
+  UpdateLastSeen(views);
+  KeepSeenEdges(history_, last_seen_, &graph_);
+}
+
+void Surface::UpdateLastSeen(const RecentViews& views) {
+  const FrameMotions& last = history_.frames.back();
+  const int now = static_cast<int>(history_.frames.size()) - 1;
+  last_seen_.resize(graph_.size(), now);
+  if (!last.tracked) return;
+  for (int i = 0; i < graph_.size(); ++i) {
+    const Eigen::Vector3d place =
+        graph_.positions[i] + last.motions[i].translation;
+    if (views.Look(last.frame, id_, place) == Sighting::kSeen) {
+      last_seen_[i] = now;
+    }
   }
 }
 

@@ -126,6 +126,8 @@ class Surface {
   /// Goes back from the last recorded frame as far as the node is not seen to
   /// be elsewhere.
   int FirstSeen(int node, const RecentViews& views) const;
+  /// Nodes that the last recorded frame shows; new ones count as seen.
+  void UpdateLastSeen(const RecentViews& views);
 
   int id_;
   std::string label_;
@@ -142,6 +144,7 @@ class Surface {
   TriangleMesh mesh_;
   MeshSkinning mesh_skinning_;
   MotionHistory history_;
+  std::vector<int> last_seen_;  // Place in history_.frames, by node.
 };
 
 }  // namespace splitfusion

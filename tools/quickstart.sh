@@ -17,14 +17,14 @@ tools/build_release.sh --target sf_synth sf_run sf_evaluate
 bin=build/release/bin
 sequence=runs/quickstart/sequence
 run=runs/quickstart/run
-rm -rf "$sequence" "$run"
+rm -rf "$sequence"
 mkdir -p runs/quickstart
 
 step() { printf '\n== %s\n' "$*"; }
 step "sf_synth --output=$sequence"
 "$bin/sf_synth" --output="$sequence"
-step "sf_run --sequence=$sequence --output=$run $*"
-"$bin/sf_run" --sequence="$sequence" --output="$run" "$@"
+step "sf_run --sequence=$sequence --output=$run --overwrite $*"
+"$bin/sf_run" --sequence="$sequence" --output="$run" --overwrite "$@"
 step "sf_evaluate --run=$run --ground_truth=$sequence/gt"
 "$bin/sf_evaluate" --run="$run" --ground_truth="$sequence/gt"
 

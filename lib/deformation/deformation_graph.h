@@ -30,6 +30,10 @@ struct DeformationGraph {
   /// known of all of them, it is of none, and all counts as seen from the
   /// start.
   std::vector<int> first_seen;
+  /// For every edge of `neighbors`, the way from j to i in the frame of node i
+  /// as it was last seen, metres: the shape of what is out of view. See
+  /// KeepSeenEdges(). Empty: not known, as after a change of the edges.
+  std::vector<std::vector<Eigen::Vector3d>> seen_edges;
 
   /// Number of nodes.
   int size() const { return static_cast<int>(positions.size()); }

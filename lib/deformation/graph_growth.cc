@@ -158,6 +158,7 @@ void AddNodes(const TriangleMesh& mesh, const GraphOptions& options,
   for (const int vertex : added.vertices) {
     graph->positions.push_back(mesh.vertices[vertex].cast<double>());
   }
+  graph->seen_edges.clear();
   graph->neighbors = ConnectAlongSurface(graph->positions, seeds, mesh,
                                          options.neighbors_per_node);
 }

@@ -1,10 +1,31 @@
 #include "splitfusion/lib/geometry/camera.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
+namespace {
+
+/// Largest |x/z| or |y/z| of a view ray: 79 degrees off the axis, beyond any
+/// lens that is a pinhole. A slip in a calibration file gives far more, and
+/// volumes that no memory holds.
+constexpr double kMaxSlope = 5;
+
+/// Intrinsics along one axis of the image.
+void CheckFieldOfView(const std::string& axis, double f, double c, int size) {
+  std::ostringstream field;
+  field << "camera c" << axis << " = " << c << ", size = " << size << ", f"
+        << axis;
+  CheckOption(std::max(std::abs(c), std::abs(size - c)) <= kMaxSlope * f,
+              field.str(), f,
+              "pixels that keep all view rays within 79 degrees of the axis");
+}
+
+}  // namespace
 
 PinholeCamera PinholeCamera::Subsampled(int stride) const {
   PinholeCamera camera;
@@ -26,6 +47,8 @@ void PinholeCamera::Check() const {
               "a positive focal length in pixels");
   CheckOption(std::isfinite(cx), "camera cx", cx, "a number in pixels");
   CheckOption(std::isfinite(cy), "camera cy", cy, "a number in pixels");
+  CheckFieldOfView("x", fx, cx, width);
+  CheckFieldOfView("y", fy, cy, height);
 }
 
 }  // namespace splitfusion

@@ -32,7 +32,8 @@ struct PinholeCamera {
   /// `stride`-th row, beginning with pixel (0, 0).
   PinholeCamera Subsampled(int stride) const;
 
-  /// @throw InputError if a size or focal length is not positive.
+  /// @throw InputError if a size or focal length is not positive, or a view ray
+  ///     leans by more than 79 degrees (wrong units, swapped fields).
   void Check() const;
 };
 

@@ -1,6 +1,7 @@
 #include "splitfusion/lib/sequence/calibration.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -40,6 +41,17 @@ void CheckCalibration(const std::string& path, const Calibration& calibration) {
   }
 }
 
+/// The keys of camera.txt.
+constexpr std::array<const char*, 7> kKeys = {
+    "width", "height", "fx", "fy", "cx", "cy", "depth_scale"};
+
+std::string KeyList() {
+  std::string list;
+  for (const char* key : kKeys)
+    list += (list.empty() ? "" : ", ") + std::string(key);
+  return list;
+}
+
 std::map<std::string, double> ReadKeys(const std::string& path) {
   std::ifstream stream = OpenText(path);
   std::map<std::string, double> values;
@@ -48,11 +60,15 @@ std::map<std::string, double> ReadKeys(const std::string& path) {
     std::istringstream words(line);
     std::string key;
     double value = 0;
-    if (!(words >> key >> value)) {
+    if (!(words >> key >> value) || !(words >> std::ws).eof()) {
       throw InputError(Place(path, number) + ": '" + line +
                        "': expected 'key value', the value a number");
     }
-    values[key] = value;
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end() ||
+        !values.emplace(key, value).second) {
+      throw InputError(Place(path, number) + ": key '" + key + "': expected " +
+                       KeyList() + ", each once");
+    }
   }
   return values;
 }
@@ -62,9 +78,8 @@ double Require(const std::string& path,
                const std::string& key) {
   const auto found = values.find(key);
   if (found != values.end()) return found->second;
-  throw InputError(path + ": no line '" + key +
-                   " VALUE': expected width, height, fx, fy, cx, cy, "
-                   "depth_scale");
+  throw InputError(path + ": no line '" + key + " VALUE': expected " +
+                   KeyList());
 }
 
 }  // namespace
@@ -88,7 +103,8 @@ Calibration ReadCalibrationLine(const std::string& path) {
   }
   std::istringstream words(line);
   if (!(words >> camera.fx >> camera.fy >> camera.cx >> camera.cy >>
-        camera.width >> camera.height >> result.depth_scale)) {
+        camera.width >> camera.height >> result.depth_scale) ||
+      !(words >> std::ws).eof()) {
     throw InputError(Place(path, number) + ": '" + line +
                      "': expected 'fx fy cx cy width height depth_factor'");
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "support/gradient_check.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
@@ -184,6 +186,94 @@ TEST(ArapTerm, IsAnnealedAboutTheFrameBefore) {
   const double cost = EnergyOf(graph, added.residuals);
   EXPECT_NEAR(cost, 3.0 / added.residual_vectors * sum / (0.01 * 0.01),
               1e-9 * cost);
+}
+
+/// A graph whose edges were last seen as another one's are.
+struct BentAndShaken {
+  BentAndShaken() {
+    Shake(0.05, /*seed=*/5, &bent);
+    graph.seen_edges.resize(graph.size());
+    for (int i = 0; i < graph.size(); ++i) {
+      for (const int j : graph.neighbors[i]) {
+        graph.seen_edges[i].push_back(
+            bent.motions[i].rotation.transpose() *
+            (bent.positions[i] + bent.motions[i].translation -
+             bent.positions[j] - bent.motions[j].translation));
+      }
+    }
+  }
+
+  /// Energy at these motions if so many points hang on every node.
+  double Energy(const std::vector<NodeMotion>& motions, int points) const {
+    DeformationGraph moved = graph;
+    moved.motions = motions;
+    std::vector<Correspondence> correspondences;
+    for (int i = 0; i < points * moved.size(); ++i) {
+      Skinning& skinning = correspondences.emplace_back().model.skinning;
+      skinning.count = 1;
+      skinning.nodes[0] = i % moved.size();
+      skinning.weights[0] = 1;
+    }
+    const TermOptions options{"arap", /*weight=*/3, LossKind::kTrivial, 0.01};
+    return EnergyOf(
+        moved, ResidualsOf(ArapTerm(),
+                           {moved, correspondences, PinholeCamera()}, options)
+                   .residuals);
+  }
+
+  DeformationGraph graph = SampleGraph();
+  DeformationGraph bent = graph;
+};
+
+TEST(ArapTerm, HiddenEdgesHoldTheShapeThatWasSeen) {
+  const BentAndShaken scene;
+  const double rest = scene.Energy(scene.graph.motions, 10);
+  EXPECT_LT(rest, 1e-12) << "seen, it is at rest at rest";
+  EXPECT_GT(scene.Energy(scene.bent.motions, 10), 1);
+  EXPECT_LT(scene.Energy(scene.bent.motions, 0), 1e-12)
+      << "hidden, it is at rest where it was last seen";
+  EXPECT_GT(scene.Energy(scene.graph.motions, 0), 1);
+}
+
+TEST(ArapTerm, HalfSeenEdgesHoldTheMeanOfBothShapes) {
+  BentAndShaken scene;
+  const double half =
+      scene.Energy(scene.bent.motions, ArapTerm::kSeenPoints / 2);
+  for (int i = 0; i < scene.graph.size(); ++i) {
+    for (std::size_t k = 0; k < scene.graph.neighbors[i].size(); ++k) {
+      const int j = scene.graph.neighbors[i][k];
+      scene.graph.seen_edges[i][k] +=
+          scene.graph.positions[i] - scene.graph.positions[j];
+      scene.graph.seen_edges[i][k] /= 2;
+    }
+  }
+  const double mean = scene.Energy(scene.bent.motions, 0);
+  EXPECT_GT(mean, 1);
+  EXPECT_NEAR(half, mean, 1e-9 * mean);
+}
+
+TEST(ArapTerm, AnEdgeIsAsHiddenAsItsHiddenEnd) {
+  DeformationGraph graph;
+  graph.positions = {{0, 0, 0}, {0.04, 0, 0}};
+  graph.motions.resize(2);
+  graph.neighbors = {{1}, {}};
+  graph.seen_edges = {{{-0.06, 0, 0}}, {}};
+  std::vector<Correspondence> correspondences(8);
+  for (Correspondence& c : correspondences) {
+    c.model.skinning.count = 1;
+    c.model.skinning.weights[0] = 1;
+    c.model.skinning.nodes[0] = 0;
+  }
+  const TermOptions options{"arap", /*weight=*/1, LossKind::kTrivial, 0.01};
+  const auto energy = [&] {
+    return EnergyOf(
+        graph, ResidualsOf(ArapTerm(),
+                           {graph, correspondences, PinholeCamera()}, options)
+                   .residuals);
+  };
+  EXPECT_NEAR(energy(), 4, 1e-9) << "2 cm too short";
+  for (int i = 0; i < 4; ++i) correspondences[i].model.skinning.nodes[0] = 1;
+  EXPECT_NEAR(energy(), 0, 1e-12) << "both ends are seen";
 }
 
 TEST(ArapTerm, IsAbsentOnARigidSurface) {

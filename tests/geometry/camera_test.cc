@@ -51,5 +51,26 @@ TEST(PinholeCamera, CheckNamesTheField) {
   EXPECT_THROW(camera.Check(), InputError);
 }
 
+TEST(PinholeCamera, CheckRefusesViewsThatNoPinholeHas) {
+  PinholeCamera crop = {1, 1, 520, 530, 319.5, 240.25};
+  EXPECT_NO_THROW(crop.Check());
+  PinholeCamera wide = kCamera;
+  wide.fx = 100;
+  EXPECT_NO_THROW(wide.Check());
+  for (const double fx : {60.0, 1.0}) {
+    wide.fx = fx;
+    try {
+      wide.Check();
+      FAIL() << fx;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(),
+                  testing::StartsWith("camera cx = 319.5, size = 640, fx = "));
+    }
+  }
+  PinholeCamera slip = kCamera;
+  slip.cy = -1e9;
+  EXPECT_THROW(slip.Check(), InputError);
+}
+
 }  // namespace
 }  // namespace splitfusion

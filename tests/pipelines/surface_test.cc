@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
+#include "splitfusion/lib/deformation/seen_edges.h"
 #include "splitfusion/pipelines/model_rendering.h"
 #include "splitfusion/pipelines/surface_output.h"
 #include "support/expect_input_error.h"
@@ -227,6 +229,43 @@ TEST(Surface, GoesBackToWhenANewPartWasFirstSeen) {
   const auto in_4 = std::count(first_seen.begin() + nodes, first_seen.end(), 4);
   EXPECT_EQ(in_4 + in_5, static_cast<int>(first_seen.size()) - nodes);
   EXPECT_GT(in_5, 2 * in_4);
+}
+
+TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+  const auto record = [&](int frame, const LiveView& live, bool tracked) {
+    DeformationGraph* graph = box.mutable_graph();
+    graph->motions.assign(graph->size(), NodeMotion());
+    Shake(0.005, /*seed=*/frame, graph);
+    RecentViews views;
+    views.Add(frame, live);
+    box.RecordMotions(frame, tracked, views);
+    return graph->seen_edges;
+  };
+  const auto seen = record(5, ViewWithBox(kWhole), true);
+  ASSERT_EQ(seen.size(), box.graph().neighbors.size());
+  LiveView hidden = ViewWithBox(kWhole);
+  hidden.depth(kWhole).setTo(0.7f);
+  hidden.labels(kWhole).setTo(2);
+  const auto later = record(6, hidden, true);
+  const auto lost = record(7, ViewWithBox(kWhole), /*tracked=*/false);
+  const auto again = record(8, ViewWithBox(kWhole), true);
+  const auto way = [&](int i, std::size_t k) -> Eigen::Vector3d {
+    const DeformationGraph& graph = box.graph();
+    const int j = graph.neighbors[i][k];
+    return graph.positions[i] - graph.positions[j];
+  };
+  for (int i = 0; i < box.graph().size(); ++i) {
+    for (std::size_t k = 0; k < seen[i].size(); ++k) {
+      const Eigen::Vector3d bend = seen[i][k] - way(i, k);
+      const double kept = std::exp2(-1 / kSeenEdgeHalfLife);
+      EXPECT_LT((later[i][k] - way(i, k) - kept * bend).norm(), 1e-9);
+      EXPECT_LT((lost[i][k] - way(i, k) - kept * kept * bend).norm(), 1e-9);
+      EXPECT_GT((again[i][k] - way(i, k) - kept * kept * kept * bend).norm(),
+                1e-5);
+    }
+  }
 }
 
 /// How nodes that are new in frame 9 fare that were in view before: the whole

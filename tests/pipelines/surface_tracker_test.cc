@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <vector>
 
 #include "pipelines/tracking_scenes.h"
+#include "splitfusion/lib/deformation/seen_edges.h"
 #include "support/expect_input_error.h"
 
 namespace splitfusion {
@@ -166,6 +169,46 @@ TEST(SurfaceTracker, BendsANonRigidSurfaceOntoTheDepth) {
   }
   EXPECT_TRUE(non_rigid);
   EXPECT_LT(factor, 2);
+}
+
+/// By how much the right half of a sheet, bent onto the depth, is another shape
+/// after frames that show the left half only: mean distance after the best
+/// rigid alignment.
+double ChangeOfHiddenHalf(bool knows_what_was_seen) {
+  BendingSheet sheet;
+  SurfaceReport report;
+  MakeTracker().Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(),
+                      &sheet.graph, &report);
+  const DeformationGraph bent = sheet.graph;
+  if (knows_what_was_seen) {
+    KeepSeenEdges({{{0, true, bent.motions}}}, std::vector<int>(bent.size(), 0),
+                  &sheet.graph);
+  }
+  std::vector<ModelSample> left, right;
+  for (const ModelSample& s : sheet.samples) {
+    (s.u < sheet.live.depth.cols / 2 ? left : right).push_back(s);
+  }
+  for (int frame = 0; frame < 3; ++frame) {
+    MakeTracker().Track(left, sheet.live, 0, Rigid3d::Identity(), &sheet.graph,
+                        &report);
+    EXPECT_EQ(report.state, "tracked") << report.reason;
+  }
+  const WarpField now(sheet.graph), before(bent);
+  Eigen::Matrix3Xd from(3, right.size()), to(3, right.size());
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    from.col(i) =
+        before.WarpPoint(right[i].skinning, right[i].point).cast<double>();
+    to.col(i) = now.WarpPoint(right[i].skinning, right[i].point).cast<double>();
+  }
+  const Rigid3d align(Eigen::umeyama(from, to, false));
+  return (align * from - to).colwise().norm().mean();
+}
+
+TEST(SurfaceTracker, WhatIsHiddenDoesNotSpringBackToRest) {
+  const double springs = ChangeOfHiddenHalf(false);
+  const double held = ChangeOfHiddenHalf(true);
+  EXPECT_GT(springs, 0.001);
+  EXPECT_LT(held, 0.25 * springs);
 }
 
 TEST(TrackerOptions, RefuseValuesOutOfRange) {

@@ -53,6 +53,8 @@ TEST(Calibration, NamesWhatIsWrong) {
     };
   };
   ExpectInputError(line("500 500 320 240 640\n"), "calibration.txt:1");
+  ExpectInputError(line("500 500 320 240 640 480 1000 0.1\n"),
+                   "calibration.txt:1");
   ExpectInputError(line("# nothing\n"), "no line");
   ExpectInputError(line("-500 500 320 240 640 480 5000\n"), "camera fx = -500");
   ExpectInputError(line("500 500 320 240 640 480 0\n"), "depth scale = 0");
@@ -67,6 +69,19 @@ TEST(Calibration, NamesTheMissingKey) {
   ExpectInputError([&] { ReadCalibrationKeys(path); }, "'fy VALUE'");
   folder.Write("camera.txt", "width wide\n");
   ExpectInputError([&] { ReadCalibrationKeys(path); }, "'width wide'");
+}
+
+TEST(Calibration, NamesKeysThatNobodyReads) {
+  const TemporaryFolder folder;
+  const auto with = [&](const std::string& line) {
+    return [path = folder.Write("camera.txt", kKeys + line)] {
+      ReadCalibrationKeys(path);
+    };
+  };
+  EXPECT_NO_THROW(with("# k1 0.2\n")());
+  ExpectInputError(with("k1 0.2\n"), "key 'k1': expected width, height");
+  ExpectInputError(with("fx 500\n"), "key 'fx'");
+  ExpectInputError(with("fx 500 501\n"), "'fx 500 501'");
 }
 
 }  // namespace
