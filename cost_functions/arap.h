@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "splitfusion/lib/association/seen_nodes.h"
 #include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
@@ -90,18 +91,21 @@ struct Arap {
 /// that is known.
 ///
 /// Where nothing is seen there is nothing but the prior, and it would take a
-/// bent limb back to its rest shape as soon as another one hides it. Edges of
-/// which an end is not seen hold the shape that was last seen instead.
+/// bent limb back to its rest shape as soon as another one hides it. Of edges
+/// of which an end is not seen, a part holds the shape that was last seen. The
+/// other part is kept, as what was last seen may be wrong.
 class ArapTerm : public EnergyTerm {
  public:
-  /// A node that so many points hang on counts as seen, one with fewer in part.
-  static constexpr double kSeenPoints = 4;
+  /// Part of the prior of a hidden edge that holds the shape last seen.
+  static constexpr double kHeld = 0.5;
 
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
     const DeformationGraph& graph = input.graph;
-    const bool holds = graph.seen_edges.size() == graph.neighbors.size();
-    const std::vector<double> seen = SeenShares(input);
+    const bool holds = KnowsSeenEdges(graph);
+    const std::vector<double> seen =
+        holds ? SeenShares(input.correspondences, graph.size())
+              : std::vector<double>(graph.size(), 1.0);
     std::vector<std::vector<int>> nodes;
     std::vector<Arap> functors;
     for (int i = 0; i < graph.size(); ++i) {
@@ -110,7 +114,7 @@ class ArapTerm : public EnergyTerm {
         nodes.push_back({i, j});
         Arap& arap = functors.emplace_back(Arap::Make(graph, i, j));
         const double hidden = 1 - std::min(seen[i], seen[j]);
-        if (holds) arap.HoldSeen(graph, hidden, i, k);
+        if (holds) arap.HoldSeen(graph, kHeld * hidden, i, k);
         if (input.before == nullptr) continue;
         arap.HoldBend(graph, *input.before, input.anneal, i, j);
       }
@@ -121,17 +125,12 @@ class ArapTerm : public EnergyTerm {
   bool is_prior() const override { return true; }
 
  private:
-  /// For every node, from 0 to 1, how far the correspondences tell where it is.
-  static std::vector<double> SeenShares(const EnergyInput& input) {
-    std::vector<double> shares(input.graph.size(), 0.0);
-    for (const Correspondence& c : input.correspondences) {
-      const Skinning& skinning = c.model.skinning;
-      for (int k = 0; k < skinning.count; ++k) {
-        shares[skinning.nodes[k]] += skinning.weights[k] / kSeenPoints;
-      }
-    }
-    for (double& share : shares) share = std::min(1.0, share);
-    return shares;
+  static bool KnowsSeenEdges(const DeformationGraph& graph) {
+    return std::equal(graph.seen_edges.begin(), graph.seen_edges.end(),
+                      graph.neighbors.begin(), graph.neighbors.end(),
+                      [](const auto& edges, const auto& neighbors) {
+                        return edges.size() == neighbors.size();
+                      });
   }
 };
 

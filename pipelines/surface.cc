@@ -187,21 +187,16 @@ void Surface::RecordMotions(int frame, bool tracked, const RecentViews& views) {
         FirstSeen(static_cast<int>(graph_.first_seen.size()), views));
   }
   if (kind_ == SurfaceKind::kRigid) return;
-  UpdateLastSeen(views);
+  UpdateLastSeen();
   KeepSeenEdges(history_, last_seen_, &graph_);
 }
 
-void Surface::UpdateLastSeen(const RecentViews& views) {
-  const FrameMotions& last = history_.frames.back();
+void Surface::UpdateLastSeen() {
   const int now = static_cast<int>(history_.frames.size()) - 1;
   last_seen_.resize(graph_.size(), now);
-  if (!last.tracked) return;
-  for (int i = 0; i < graph_.size(); ++i) {
-    const Eigen::Vector3d place =
-        graph_.positions[i] + last.motions[i].translation;
-    if (views.Look(last.frame, id_, place) == Sighting::kSeen) {
-      last_seen_[i] = now;
-    }
+  if (!history_.frames.back().tracked) return;
+  for (std::size_t i = 0; i < graph_.seen.size(); ++i) {
+    if (graph_.seen[i] >= 1) last_seen_[i] = now;
   }
 }
 

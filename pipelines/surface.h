@@ -69,7 +69,8 @@ class Surface {
   void FinishMesh();
 
   /// Appends the current motions to the history. `views`, with this frame the
-  /// last one, tell since when the nodes that are new in it have been in view.
+  /// last one, tell since when the nodes that are new in it have been in view;
+  /// the graph is told how its edges were last seen.
   void RecordMotions(int frame, bool tracked, const RecentViews& views);
 
   /// Mesh vertices under the current motions, camera frame.
@@ -126,8 +127,8 @@ class Surface {
   /// Goes back from the last recorded frame as far as the node is not seen to
   /// be elsewhere.
   int FirstSeen(int node, const RecentViews& views) const;
-  /// Nodes that the last recorded frame shows; new ones count as seen.
-  void UpdateLastSeen(const RecentViews& views);
+  /// In the last recorded frame, if it was tracked; new nodes count as seen.
+  void UpdateLastSeen();
 
   int id_;
   std::string label_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "splitfusion/lib/association/seen_nodes.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 
@@ -258,6 +259,9 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   const Association association = Associate(samples, WarpField(*graph), live,
                                             surface, stage.stride, stage.gates);
   round.association = association.counts;
+  if (!graph->rigid()) {
+    graph->seen = SeenShares(association.correspondences, graph->size());
+  }
   report->associate_seconds += stopwatch.Restart();
   bool settled = true;
   if (!association.correspondences.empty()) {

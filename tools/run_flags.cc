@@ -102,7 +102,7 @@ PinholeCamera ParseIntrinsics(const std::string& text) {
   if (!(stream >> camera.fx >> comma[0] >> camera.fy >> comma[1] >> camera.cx >>
         comma[2] >> camera.cy >> comma[3] >> camera.width >> comma[4] >>
         camera.height) ||
-      std::string(comma, 5) != ",,,,,") {
+      std::string(comma, 5) != ",,,,," || !(stream >> std::ws).eof()) {
     throw InputError("--intrinsics=" + text +
                      ": expected fx,fy,cx,cy,width,height");
   }

@@ -30,9 +30,13 @@ struct DeformationGraph {
   /// known of all of them, it is of none, and all counts as seen from the
   /// start.
   std::vector<int> first_seen;
-  /// For every edge of `neighbors`, the way from j to i in the frame of node i
-  /// as it was last seen, metres: the shape of what is out of view. See
-  /// KeepSeenEdges(). Empty: not known, as after a change of the edges.
+  /// How far the last association told where each node is, 0 to 1, see
+  /// SeenShares(); nodes beyond its end are newer.
+  std::vector<double> seen;
+  /// For every edge of `neighbors`, the way from j to i in the frame of node i,
+  /// R_i^T (g_i + t_i - g_j - t_j), as it was last seen, metres; what is out of
+  /// view keeps something of it. See KeepSeenEdges(). Empty: not known, as
+  /// after a change of the edges.
   std::vector<std::vector<Eigen::Vector3d>> seen_edges;
 
   /// Number of nodes.

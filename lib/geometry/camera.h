@@ -33,7 +33,7 @@ struct PinholeCamera {
   PinholeCamera Subsampled(int stride) const;
 
   /// @throw InputError if a size or focal length is not positive, or a view ray
-  ///     leans by more than 79 degrees (wrong units, swapped fields).
+  ///     leans by more than 79 degrees (wrong units).
   void Check() const;
 };
 

@@ -20,13 +20,14 @@ struct Calibration {
 /// Reads `calibration.txt`: one line `fx fy cx cy width height depth_factor`,
 /// `#` comments.
 ///
-/// @throw InputError on a missing file or a value that does not parse.
+/// @throw InputError on a missing file, a value that does not parse or one
+/// more.
 Calibration ReadCalibrationLine(const std::string& path);
 
 /// Reads `camera.txt`: `key value` lines with the keys width, height, fx, fy,
 /// cx, cy, depth_scale; `#` comments.
 ///
-/// @throw InputError on a missing file, an unknown or a missing key.
+/// @throw InputError on a missing file, an unknown, repeated or missing key.
 Calibration ReadCalibrationKeys(const std::string& path);
 
 /// Reads `calibration.txt` or else `camera.txt` of a folder; empty if there is

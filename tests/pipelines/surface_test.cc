@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
-#include "splitfusion/lib/deformation/seen_edges.h"
 #include "splitfusion/pipelines/model_rendering.h"
 #include "splitfusion/pipelines/surface_output.h"
 #include "support/expect_input_error.h"
@@ -234,37 +232,43 @@ TEST(Surface, GoesBackToWhenANewPartWasFirstSeen) {
 TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
   Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
   ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
-  const auto record = [&](int frame, const LiveView& live, bool tracked) {
+  const auto record = [&](int frame, double seen, bool tracked) {
     DeformationGraph* graph = box.mutable_graph();
     graph->motions.assign(graph->size(), NodeMotion());
     Shake(0.005, /*seed=*/frame, graph);
-    RecentViews views;
-    views.Add(frame, live);
-    box.RecordMotions(frame, tracked, views);
+    graph->seen.assign(graph->size(), seen);
+    box.RecordMotions(frame, tracked, RecentViews());
     return graph->seen_edges;
   };
-  const auto seen = record(5, ViewWithBox(kWhole), true);
+  const auto seen = record(5, 1, true);
   ASSERT_EQ(seen.size(), box.graph().neighbors.size());
-  LiveView hidden = ViewWithBox(kWhole);
-  hidden.depth(kWhole).setTo(0.7f);
-  hidden.labels(kWhole).setTo(2);
-  const auto later = record(6, hidden, true);
-  const auto lost = record(7, ViewWithBox(kWhole), /*tracked=*/false);
-  const auto again = record(8, ViewWithBox(kWhole), true);
-  const auto way = [&](int i, std::size_t k) -> Eigen::Vector3d {
-    const DeformationGraph& graph = box.graph();
-    const int j = graph.neighbors[i][k];
-    return graph.positions[i] - graph.positions[j];
-  };
+  EXPECT_EQ(record(6, 0.5, true), seen) << "half hidden";
+  EXPECT_EQ(record(7, 1, /*tracked=*/false), seen);
+  const auto again = record(8, 1, true);
   for (int i = 0; i < box.graph().size(); ++i) {
     for (std::size_t k = 0; k < seen[i].size(); ++k) {
-      const Eigen::Vector3d bend = seen[i][k] - way(i, k);
-      const double kept = std::exp2(-1 / kSeenEdgeHalfLife);
-      EXPECT_LT((later[i][k] - way(i, k) - kept * bend).norm(), 1e-9);
-      EXPECT_LT((lost[i][k] - way(i, k) - kept * kept * bend).norm(), 1e-9);
-      EXPECT_GT((again[i][k] - way(i, k) - kept * kept * kept * bend).norm(),
-                1e-5);
+      EXPECT_GT((again[i][k] - seen[i][k]).norm(), 1e-5);
     }
+  }
+}
+
+TEST(Surface, KnowsSeenEdgesOfNewNodes) {
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true, RecentViews());
+  const int nodes = box.graph().size();
+  box.mutable_graph()->seen.assign(nodes, 0);
+  for (int i = 0; i < 6; ++i) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+  }
+  ASSERT_GT(box.graph().size(), 1.5 * nodes);
+  EXPECT_TRUE(box.graph().seen_edges.empty()) << "of other edges";
+  box.RecordMotions(5, true, RecentViews());
+  ASSERT_EQ(box.graph().seen_edges.size(), box.graph().neighbors.size());
+  for (int i = 0; i < box.graph().size(); ++i) {
+    EXPECT_EQ(box.graph().seen_edges[i].size(),
+              box.graph().neighbors[i].size());
   }
 }
 

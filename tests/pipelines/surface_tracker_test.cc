@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipelines/tracking_scenes.h"
+#include "splitfusion/cost_functions/arap.h"
 #include "splitfusion/lib/deformation/seen_edges.h"
 #include "support/expect_input_error.h"
 
@@ -208,7 +209,29 @@ TEST(SurfaceTracker, WhatIsHiddenDoesNotSpringBackToRest) {
   const double springs = ChangeOfHiddenHalf(false);
   const double held = ChangeOfHiddenHalf(true);
   EXPECT_GT(springs, 0.001);
-  EXPECT_LT(held, 0.25 * springs);
+  EXPECT_LT(held, (1 - 0.5 * ArapTerm::kHeld) * springs);
+}
+
+TEST(SurfaceTracker, TellsWhichNodesWereSeen) {
+  BendingSheet sheet;
+  sheet.live.labels.colRange(sheet.live.labels.cols / 2, sheet.live.labels.cols)
+      .setTo(9);
+  TrackerOptions options = TrackerOptions::Defaults();
+  options.min_fit = 0;
+  SurfaceReport report;
+  MakeTracker(options).Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(),
+                             &sheet.graph, &report);
+  ASSERT_EQ(report.state, "tracked") << report.reason;
+  ASSERT_EQ(static_cast<int>(sheet.graph.seen.size()), sheet.graph.size());
+  for (int i = 0; i < sheet.graph.size(); ++i) {
+    const double x = sheet.graph.positions[i].x();
+    if (x < -0.08 && x > -0.2) {
+      EXPECT_EQ(sheet.graph.seen[i], 1) << x;
+    }
+    if (x > 0.08) {
+      EXPECT_EQ(sheet.graph.seen[i], 0) << x;
+    }
+  }
 }
 
 TEST(TrackerOptions, RefuseValuesOutOfRange) {

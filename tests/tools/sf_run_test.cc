@@ -205,6 +205,7 @@ TEST_F(SfRun, BadOptionsEndWithTwoAndLeaveNothing) {
   refused("--mask_kind=soft", "--mask_kind = soft: expected rigid");
   refused("--masks=/no/such/folder", "/no/such/folder");
   refused("--intrinsics=1,2", "--intrinsics=1,2: expected fx,fy,cx,cy");
+  refused("--intrinsics=50,50,32,24,64,48,9", "9: expected fx,fy,cx,cy");
   refused("--max_frames=-1", "--max_frames = -1");
   EXPECT_FALSE(folder_.Has("run"));
 }
