@@ -127,7 +127,8 @@ class Surface {
   /// Goes back from the last recorded frame as far as the node is not seen to
   /// be elsewhere.
   int FirstSeen(int node, const RecentViews& views) const;
-  /// In the last recorded frame, if it was tracked; new nodes count as seen.
+  /// Notes which nodes the last recorded frame showed: none if it was not
+  /// tracked, but new ones in any case.
   void UpdateLastSeen();
 
   int id_;

@@ -11,7 +11,8 @@ namespace splitfusion {
 /// weights of Eq. 3), in part if fewer do.
 constexpr double kSeenPoints = 4;
 
-/// For every node, from 0 to 1, how far correspondences tell where it is.
+/// For each of a graph's `nodes` nodes, from 0 to 1, how far correspondences
+/// tell where it is.
 std::vector<double> SeenShares(
     const std::vector<Correspondence>& correspondences, int nodes);
 
