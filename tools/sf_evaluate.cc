@@ -41,6 +41,9 @@ DEFINE_int32(depth_every, 10,
 DEFINE_bool(whole_model, false,
             "In every frame the whole final model, with what the camera saw "
             "of it only later.");
+DEFINE_bool(with_unknown, false,
+            "In every frame all that had been seen by then, with parts of "
+            "which nobody knows where they are.");
 DEFINE_string(track_query, "",
               "CSV id,frame,x,y,z (camera frame, m): points of one frame to "
               "follow through --run.");
@@ -119,10 +122,9 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
     std::cout << FLAGS_run << ": unfinished run (summary.json is missing or "
               << "says so); judged by the frames that it has\n";
   }
-  if (FLAGS_whole_model) {
-    for (RecordedSurface& surface : run.surfaces) {
-      surface.graph.first_seen.clear();
-    }
+  for (RecordedSurface& surface : run.surfaces) {
+    if (FLAGS_whole_model) surface.graph.first_seen.clear();
+    if (FLAGS_with_unknown) surface.graph.sightings.clear();
   }
   const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
   std::optional<GroundTruth> truth;
@@ -133,6 +135,7 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
   }
   RunEvaluation evaluation = EvaluateRun(run, surfaces, truth, options);
   evaluation.whole_model = FLAGS_whole_model;
+  evaluation.with_unknown = FLAGS_with_unknown || FLAGS_whole_model;
   Publish(FormatTable(evaluation), ToJson(evaluation),
           (std::filesystem::path(FLAGS_run) / "evaluation.json").string());
 }
@@ -149,6 +152,8 @@ void CheckUsage() {
   require(given(FLAGS_track_query) == given(FLAGS_track_output),
           "--track_query and --track_output go together");
   require(!FLAGS_whole_model || given(FLAGS_run), "--whole_model needs --run");
+  require(!FLAGS_with_unknown || given(FLAGS_run),
+          "--with_unknown needs --run");
   require(!given(FLAGS_track_query) || given(FLAGS_run),
           "--track_query needs --run");
   require(!given(FLAGS_trajectory) || given(FLAGS_ground_truth),

@@ -105,25 +105,73 @@ void CheckEdges(const std::string& path, const DeformationGraph& graph) {
   }
 }
 
-std::vector<int> FirstSeen(const std::string& path, const Json& json,
-                           std::size_t nodes) {
-  if (json.size() != nodes && !json.empty()) {
-    throw InputError(path + ": 'first_seen' has " +
-                     std::to_string(json.size()) +
-                     " entries: expected one a node, " + std::to_string(nodes) +
-                     ", or none");
-  }
+void CheckArray(const std::string& path, const std::string& field,
+                const Json& json) {
+  if (json.is_array()) return;
+  throw InputError(path + ": field '" + field + "': " + json.dump() +
+                   ": expected an array");
+}
+
+/// A field that has an entry for every node or none at all.
+void CheckEntries(const std::string& path, const std::string& field,
+                  const Json& json, std::size_t nodes) {
+  CheckArray(path, field, json);
+  if (json.size() == nodes || json.empty()) return;
+  throw InputError(
+      path + ": '" + field + "' has " + std::to_string(json.size()) +
+      " entries: expected one a node, " + std::to_string(nodes) + ", or none");
+}
+
+std::vector<int> Frames(const std::string& path, const std::string& field,
+                        const Json& json) {
   std::vector<int> frames;
   for (const Json& item : json) {
     const bool is_frame =
         item.is_number_unsigned() && item.get<std::uint64_t>() <= INT32_MAX;
     if (!is_frame) {
-      throw InputError(path + ": field 'first_seen': " + item.dump() +
+      throw InputError(path + ": field '" + field + "': " + item.dump() +
                        ": expected a frame index");
     }
     frames.push_back(item.get<int>());
   }
   return frames;
+}
+
+std::vector<int> FirstSeen(const std::string& path, const Json& json,
+                           std::size_t nodes) {
+  CheckEntries(path, "first_seen", json, nodes);
+  return Frames(path, "first_seen", json);
+}
+
+/// Runs of frames of one node: [first, last, first, last, ...].
+std::vector<FrameRun> Runs(const std::string& path, const Json& json) {
+  CheckArray(path, "sightings", json);
+  const std::vector<int> ends = Frames(path, "sightings", json);
+  bool ascending = !ends.empty() && ends.size() % 2 == 0;
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    // A run may be one frame, but the next one begins later.
+    const bool next_run = i % 2 == 0;
+    ascending = ascending &&
+                (next_run ? ends[i - 1] < ends[i] : ends[i - 1] <= ends[i]);
+  }
+  if (!ascending) {
+    throw InputError(path + ": field 'sightings': " + json.dump() +
+                     ": expected first and last frames of runs, ascending");
+  }
+  std::vector<FrameRun> runs;
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    runs.push_back({ends[i], ends[i + 1]});
+  }
+  return runs;
+}
+
+std::vector<std::vector<FrameRun>> Sightings(const std::string& path,
+                                             const Json& json,
+                                             std::size_t nodes) {
+  CheckEntries(path, "sightings", json, nodes);
+  std::vector<std::vector<FrameRun>> sightings;
+  for (const Json& item : json) sightings.push_back(Runs(path, item));
+  return sightings;
 }
 
 DeformationGraph ParseGraph(const std::string& path, const Json& json) {
@@ -146,6 +194,8 @@ DeformationGraph ParseGraph(const std::string& path, const Json& json) {
   CheckEdges(path, graph);
   graph.first_seen = FirstSeen(path, json.value("first_seen", Json::array()),
                                graph.positions.size());
+  graph.sightings = Sightings(path, json.value("sightings", Json::array()),
+                              graph.positions.size());
   return graph;
 }
 
@@ -214,11 +264,20 @@ void WriteGraph(const std::string& path, const DeformationGraph& graph,
   for (const Eigen::Vector3d& g : graph.positions) {
     positions.push_back({g.x(), g.y(), g.z()});
   }
+  Json sightings = Json::array();
+  for (const std::vector<FrameRun>& runs : graph.sightings) {
+    sightings.push_back(Json::array());
+    for (const FrameRun& run : runs) {
+      sightings.back().push_back(run.first);
+      sightings.back().push_back(run.last);
+    }
+  }
   const Json json = {{"node_spacing", graph.node_spacing},
                      {"neighbors_per_point", neighbors_per_point},
                      {"positions", positions},
                      {"edges", graph.neighbors},
-                     {"first_seen", graph.first_seen}};
+                     {"first_seen", graph.first_seen},
+                     {"sightings", sightings}};
   WriteFileAtomically(path, [&](std::ostream& out) { out << json << '\n'; });
 }
 

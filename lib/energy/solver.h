@@ -11,7 +11,7 @@
 
 namespace splitfusion {
 
-/// Options of the minimiser; names and values are Ceres' own.
+/// Options of the minimiser; names are Ceres' own.
 struct SolverOptions {
   /// gn_pcg or gn_cholesky (block Gauss-Newton over the same residuals, see
   /// MinimizeWithGaussNewton), or ceres, the reference.
@@ -36,8 +36,12 @@ struct SolverOptions {
   double gradient_tolerance = 1e-10;
   /// Converged when the step is below (radians, metres).
   double parameter_tolerance = 1e-8;
-  double initial_radius = 1e4;  ///< Of the trust region.
-  bool full_report = false;     ///< Keep Ceres' FullReport() text.
+  /// Of the trust region: Levenberg-Marquardt raises the diagonal of J^T J by
+  /// itself / radius. With Ceres' own 1e4, hidden parts that hang on little
+  /// swing by up to a right angle in a frame; with 1e2, limbs in view are
+  /// followed too slowly.
+  double initial_radius = 1e3;
+  bool full_report = false;  ///< Keep Ceres' FullReport() text.
 
   /// @throw InputError on an unknown name or a value out of range.
   void Check() const;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/deformation/seen_triangles.h"
+#include "splitfusion/lib/deformation/known_triangles.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
 
@@ -35,9 +35,9 @@ class AnimatedSurface {
   /// metres.
   std::vector<Eigen::Vector3f> VerticesAt(int frame) const;
 
-  /// Triangles of the mesh that had been seen by a frame (SeenTriangles).
+  /// Triangles of the mesh that are known in a frame (KnownTriangles).
   std::vector<Eigen::Vector3i> TrianglesAt(int frame) const {
-    return SeenTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
+    return KnownTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
   }
 
   /// Skinning of a canonical point, metres.

@@ -151,6 +151,7 @@ Json ToJson(const RunEvaluation& evaluation) {
   json["ground_truth"] =
       evaluation.trajectory ? Json(evaluation.ground_truth) : Json();
   json["whole_model"] = evaluation.whole_model;
+  json["with_unknown"] = evaluation.with_unknown;
   json.update(TrajectoryJson(evaluation.trajectory));
   json["background"] =
       evaluation.background ? ToJson(*evaluation.background) : Json();

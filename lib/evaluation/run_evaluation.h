@@ -49,6 +49,9 @@ struct RunEvaluation {
   /// Set by whoever cleared DeformationGraph::first_seen: the model of every
   /// frame was the whole final one.
   bool whole_model = false;
+  /// Set by whoever cleared DeformationGraph::sightings (or first_seen): the
+  /// model of every frame held what KnownNodes() would leave out.
+  bool with_unknown = false;
   std::optional<TrajectoryError> trajectory;  ///< ATE, RPE, alignment.
   /// The background's mesh, put into the true world by
   /// TrajectoryError::truth_from_estimate_by_poses.

@@ -65,8 +65,8 @@ TEST_P(EverySolver, FindsTheSameMinimum) {
 TEST(GnCholesky, StepsAreThoseOfCeresHoweverSmall) {
   const TriangleMesh mesh = CornerMesh(0.02);
   const Energy energy = EnergyWithCustomTerm();
-  SolverOptions options;  // One iteration per association.
-  options.solver = "ceres";
+  SolverOptions options;         // One iteration per association.
+  options.initial_radius = 1e4;  // The less damped, the less is left to do.
   DeformationGraph expected = CoverWithNodes(mesh, 0.04), graph = expected;
   for (int round = 0; round < 12; ++round) {
     // The further, the less is left to be done.

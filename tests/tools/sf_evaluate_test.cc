@@ -76,6 +76,38 @@ TEST_F(SfEvaluate, JudgesTheModelOfTheFrameOrTheWholeModel) {
                 "--whole_model needs --run");
 }
 
+TEST_F(SfEvaluate, LeavesOutWhatIsNotKnownOrNot) {
+  BentPlate().WriteSequence(folder_ / "sequence", folder_ / "run");
+  const std::string path = "run/surfaces/001_thin_plate/graph.json";
+  auto graph = nlohmann::json::parse(folder_.Read(path));
+  const std::size_t nodes = graph["positions"].size();
+  graph["first_seen"] = std::vector<int>(nodes, 0);
+  // One node is seen on, and nothing holds the others.
+  graph["edges"] = std::vector<std::vector<int>>(nodes);
+  graph["sightings"] = std::vector<std::vector<int>>(nodes, {0, 0});
+  graph["sightings"][0] = {0, 100};
+  folder_.Write(path, graph.dump());
+  for (const bool unknown : {false, true}) {
+    const ProgramResult result =
+        Run("--depth_every=9 --run=" + (folder_ / "run") +
+            (unknown ? " --with_unknown" : ""));
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    const auto found =
+        nlohmann::json::parse(folder_.Read("run/evaluation.json"));
+    EXPECT_EQ(found["with_unknown"], unknown);
+    const auto& plate = found["depth_agreement"][1];
+    EXPECT_EQ(plate["frames"], 2);  // 0, in which all is known, and 9.
+    const double uncovered = plate["uncovered_fraction"];
+    if (unknown) {
+      EXPECT_LT(uncovered, 0.1);
+    } else {
+      EXPECT_NEAR(uncovered, 0.45, 0.1);
+    }
+  }
+  ExpectRefused("--with_unknown --trajectory=a --ground_truth=b",
+                "--with_unknown needs --run");
+}
+
 TEST_F(SfEvaluate, NeedsNoTruthToCompareTheModelWithTheLiveDepth) {
   const std::string arguments = "--depth_every=3 --run=" + (folder_ / "run");
   ProgramResult result = Run(arguments);

@@ -1,5 +1,5 @@
-#ifndef SPLITFUSION_LIB_DEFORMATION_SEEN_TRIANGLES_H_
-#define SPLITFUSION_LIB_DEFORMATION_SEEN_TRIANGLES_H_
+#ifndef SPLITFUSION_LIB_DEFORMATION_KNOWN_TRIANGLES_H_
+#define SPLITFUSION_LIB_DEFORMATION_KNOWN_TRIANGLES_H_
 
 #include <Eigen/Core>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace splitfusion {
 
-/// The part of a surface's final mesh that had been seen by a frame: triangles
-/// whose corners lie near nodes that had (DeformationGraph::first_seen).
+/// The part of a surface's final mesh of which it is known where it was in a
+/// frame: triangles whose corners lie near known nodes (KnownNodes).
 ///
 /// A node is near as far as the node spacing: so far the graph did not grow. At
 /// GraphOptions::max_nodes it does not grow at all, and what is new is near an
@@ -20,13 +20,14 @@ namespace splitfusion {
 /// Motions carry every vertex to every frame, but those of a node before it
 /// was made are only blended from the nodes around it: an arm that came into
 /// view raised would stick out, raised and in free space, in all frames before.
+/// And a leg that went behind the other one is carried on as it was.
 ///
 /// `mesh` canonical, metres; `skinning`: of its vertices by the nodes of
 /// `graph`.
-std::vector<Eigen::Vector3i> SeenTriangles(
+std::vector<Eigen::Vector3i> KnownTriangles(
     const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
     const DeformationGraph& graph, int frame);
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_DEFORMATION_SEEN_TRIANGLES_H_
+#endif  // SPLITFUSION_LIB_DEFORMATION_KNOWN_TRIANGLES_H_
