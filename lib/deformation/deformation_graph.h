@@ -17,8 +17,8 @@ struct NodeMotion {
 
 /// Frames from the first to the last one, both included.
 struct FrameRun {
-  int first = 0;
-  int last = 0;
+  int first = 0;  ///< Index of the first frame.
+  int last = 0;   ///< Index of the last frame.
 };
 
 /// The embedded deformation graph of one surface (SplitFusion IV-B).
