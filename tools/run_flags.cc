@@ -54,7 +54,8 @@ DEFINE_double(gradient_tolerance, 1e-10,
               "Converged when the gradient's largest entry is below.");
 DEFINE_double(parameter_tolerance, 1e-8,
               "Converged when the step is below (radians, metres).");
-DEFINE_double(initial_radius, 1e3, "First radius of the trust region.");
+DEFINE_double(initial_radius, 1e3,
+              "First radius of the trust region; 1 / damping.");
 DEFINE_bool(full_report, false, "Write Ceres' FullReport() of every solve.");
 DEFINE_double(rigid_distance, 0.10, "First rigid gate, metres (ends at half).");
 DEFINE_double(rigid_angle, 30, "First rigid gate, degrees (ends at 2/3).");

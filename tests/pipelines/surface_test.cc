@@ -227,6 +227,11 @@ TEST(Surface, GoesBackToWhenANewPartWasFirstSeen) {
   const auto in_4 = std::count(first_seen.begin() + nodes, first_seen.end(), 4);
   EXPECT_EQ(in_4 + in_5, static_cast<int>(first_seen.size()) - nodes);
   EXPECT_GT(in_5, 2 * in_4);
+  // Since then they are taken for seen, although they were no nodes yet.
+  for (int i = nodes; i < box.graph().size(); ++i) {
+    EXPECT_EQ(box.graph().sightings[i].front().first, first_seen[i]);
+  }
+  EXPECT_GE(box.graph().sightings.back().front().last, born);
 }
 
 TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
