@@ -8,13 +8,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ostream>
 #include <random>
+#include <string>
 
 #include "splitfusion/lib/geometry/point_map.h"
 #include "splitfusion/lib/tsdf/internal/fusion_image.h"
 #include "splitfusion/lib/tsdf/internal/image_box.h"
 #include "splitfusion/lib/tsdf/internal/packed_color.h"
-#include "splitfusion/lib/tsdf/internal/wide_fusion.h"
+#include "splitfusion/lib/tsdf/internal/rigid_fusion.h"
 #include "support/sample_depth.h"
 
 namespace splitfusion {
@@ -241,8 +243,24 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
   EXPECT_LT(uncertain, 300 * 512 / 100);
 }
 
-TEST_F(VoxelFusion, AllProcessorsGiveTheSameNumbers) {
-  if (!HasWideLanes()) GTEST_SKIP() << "this processor has no AVX-512";
+/// A version of FuseRigidBlocks() and what runs it.
+struct FusionVersion {
+  const char* processor;
+  RigidFusion (*get)();
+};
+
+void PrintTo(const FusionVersion& version, std::ostream* out) {
+  *out << version.processor;
+}
+
+class FusionVersions : public VoxelFusion,
+                       public testing::WithParamInterface<FusionVersion> {};
+
+TEST_P(FusionVersions, GivesTheNumbersOfThePortableOne) {
+  const RigidFusion fuse = GetParam().get();
+  if (fuse == nullptr) {
+    GTEST_SKIP() << "this processor has no " << GetParam().processor;
+  }
   int in_image = 0;
   for (int round = 0; round < 200; ++round) {
     const Placement at = RandomPlacement(&random_);
@@ -255,19 +273,26 @@ TEST_F(VoxelFusion, AllProcessorsGiveTheSameNumbers) {
     const FusedPart known = image_.MayChange(box);
     in_image += known.in_image;
     for (const FusedPart& part : {kAll, known}) {
-      Block narrow = RandomBlock(&random_);
-      Block wide = narrow;
-      RigidBlock narrow_block = at.ToBlock(part, &narrow);
-      RigidBlock wide_block = at.ToBlock(part, &wide);
-      FuseRigidNarrow(image_.view(), steps.rows, &narrow_block, 1);
-      FuseRigidWide(image_.view(), steps.rows, &wide_block, 1);
-      EXPECT_TRUE(narrow == wide) << "round " << round;
-      EXPECT_EQ(narrow_block.changed, wide_block.changed);
-      EXPECT_EQ(narrow_block.has_inside, wide_block.has_inside);
+      Block expected = RandomBlock(&random_);
+      Block block = expected;
+      RigidBlock expected_block = at.ToBlock(part, &expected);
+      RigidBlock rigid_block = at.ToBlock(part, &block);
+      PortableFusion()(image_.view(), steps.rows, &expected_block, 1);
+      fuse(image_.view(), steps.rows, &rigid_block, 1);
+      EXPECT_TRUE(block == expected) << "round " << round;
+      EXPECT_EQ(rigid_block.changed, expected_block.changed);
+      EXPECT_EQ(rigid_block.has_inside, expected_block.has_inside);
     }
   }
   EXPECT_GT(in_image, 20);
 }
+
+INSTANTIATE_TEST_SUITE_P(Processors, FusionVersions,
+                         testing::Values(FusionVersion{"AVX512", Avx512Fusion},
+                                         FusionVersion{"AVX2", Avx2Fusion}),
+                         [](const auto& info) {
+                           return std::string(info.param.processor);
+                         });
 
 TEST_F(VoxelFusion, BoxesHoldTheVoxelsOfEveryBlock) {
   constexpr int kCount = 11;  // No multiple of the lanes.

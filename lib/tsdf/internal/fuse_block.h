@@ -37,6 +37,13 @@ SPLITFUSION_INLINE void Prefetch(const FusedLeaf& from) {
   if (from.color != nullptr) __builtin_prefetch(from.color, 1, kLocality);
 }
 
+/// Whether a pack of a block begins a line of the cache.
+template <typename Pack>
+constexpr bool BeginsLine(int pack) {
+  constexpr int kLine = 64 / sizeof(float);
+  return pack * Pack::kCount % kLine == 0;
+}
+
 /// Voxels of some slabs as the camera sees them, pack by pack.
 template <typename Pack>
 struct SeenSlabs {
@@ -54,7 +61,9 @@ struct SeenSlabs {
 template <Cache kCache, typename Pack>
 SPLITFUSION_INLINE void PrefetchSlabs(const FusedLeaf& from) {
   for (int i = 0; i < SeenSlabs<Pack>::kPacks; ++i) {
-    Prefetch<kCache>(VoxelsFrom(from, i * Pack::kCount));
+    if (BeginsLine<Pack>(i)) {
+      Prefetch<kCache>(VoxelsFrom(from, i * Pack::kCount));
+    }
   }
 }
 
@@ -84,7 +93,9 @@ SPLITFUSION_INLINE void FuseSlabs(const FusionView& view,
                                   typename Pack::Whole* changed) {
   SeenRow<Pack> rows[slabs.kPacks];
   for (int i = 0; i < slabs.kPacks; ++i) {
-    Prefetch<Cache::kFirst>(VoxelsFrom(next, i * Pack::kCount));
+    if (BeginsLine<Pack>(i)) {
+      Prefetch<Cache::kFirst>(VoxelsFrom(next, i * Pack::kCount));
+    }
     SeeRow<Pack, kForeign>(view, slabs.pixel[i], slabs.z[i], slabs.foreign[i],
                            &rows[i]);
   }

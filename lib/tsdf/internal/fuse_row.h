@@ -43,10 +43,14 @@ SPLITFUSION_INLINE typename Pack::Whole PixelsOf(const FusionView& view,
   constexpr float kRounding = 12582912.0f;  // 1.5 * 2^23
   const Real inverse_z = 1 / at.z;
   const auto zero = (Wrapping)Pack::Bits(Real{} + kRounding);
-  const Wrapping u = (Wrapping)Pack::Bits(at.zu * inverse_z + kRounding) - zero;
-  const Wrapping v = (Wrapping)Pack::Bits(at.zv * inverse_z + kRounding) - zero;
-  const auto pixel = (Whole)(v * static_cast<std::uint32_t>(view.width) + u);
+  const auto u_bits = (Wrapping)Pack::Bits(at.zu * inverse_z + kRounding);
+  const auto v_bits = (Wrapping)Pack::Bits(at.zv * inverse_z + kRounding);
+  const auto width = static_cast<std::uint32_t>(view.width);
+  // v * width + u
+  const auto pixel = (Whole)(v_bits * width + (u_bits - zero * (width + 1)));
   if (kAllInside) return pixel;
+  const Wrapping u = u_bits - zero;
+  const Wrapping v = v_bits - zero;
   const typename Pack::Mask inside =
       Pack::Less(Real{} + kNear, at.z) &
       Pack::Within((Whole)u, Whole{} + view.width) &

@@ -17,9 +17,20 @@ using Lanes = float __attribute__((vector_size(sizeof(float) * 8)));
 /// Eight integers, or eight conditions: 0 or -1.
 using Flags = std::int32_t __attribute__((vector_size(sizeof(float) * 8)));
 
-/// Fusion eight voxels at a time, for any processor. Another pack of lanes is
-/// SixteenLanes: loops are written once for both, with these names and the
-/// functions below.
+/// Two indices, none negative, at once: half as many loads.
+struct TwoIndices {
+  explicit SPLITFUSION_INLINE TwoIndices(const std::int32_t index[2]) {
+    std::uint64_t both;
+    std::memcpy(&both, index, sizeof(both));
+    first = both & UINT32_MAX;
+    second = both >> 32;
+  }
+  std::uint64_t first, second;
+};
+
+/// Fusion eight voxels at a time, for any processor. Other packs of lanes are
+/// Avx2Lanes and SixteenLanes: loops are written once for all, with these names
+/// and the functions below.
 struct EightLanes {
   static constexpr int kCount = 8;  ///< Numbers worked on side by side.
   using Real = Lanes;               ///< As many numbers.

@@ -7,7 +7,7 @@
 
 #include "splitfusion/lib/base/vector_clones.h"
 #include "splitfusion/lib/tsdf/internal/fuse_block.h"
-#include "splitfusion/lib/tsdf/internal/wide_fusion.h"
+#include "splitfusion/lib/tsdf/internal/rigid_fusion.h"
 
 namespace splitfusion {
 namespace internal {
@@ -44,18 +44,26 @@ SPLITFUSION_INLINE void InterpolateRow(const float plane[9][3], int y, int axis,
   *row = begin + along * (end - begin);
 }
 
-}  // namespace
-
-SPLITFUSION_VECTOR_CLONES
-void FuseRigidNarrow(const FusionView& view, const float steps[3][3],
-                     RigidBlock* blocks, int count) {
+void FuseRigidAnywhere(const FusionView& view, const float steps[3][3],
+                       RigidBlock* blocks, int count) {
   const FusionView local = view;  // Which no voxel's address can be that of.
   FuseRigid<EightLanes>(local, steps, blocks, count);
 }
 
+RigidFusion FastestFusion() {
+  for (const RigidFusion fuse : {Avx512Fusion(), Avx2Fusion()}) {
+    if (fuse != nullptr) return fuse;
+  }
+  return PortableFusion();
+}
+
+}  // namespace
+
+RigidFusion PortableFusion() { return FuseRigidAnywhere; }
+
 void FuseRigidBlocks(const FusionView& view, const float steps[3][3],
                      RigidBlock* blocks, int count) {
-  static const auto fuse = HasWideLanes() ? FuseRigidWide : FuseRigidNarrow;
+  static const RigidFusion fuse = FastestFusion();
   fuse(view, steps, blocks, count);
 }
 

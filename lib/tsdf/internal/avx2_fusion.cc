@@ -1,6 +1,6 @@
 #pragma GCC optimize("no-trapping-math", "fp-contract=off")
 
-#include "splitfusion/lib/tsdf/internal/wide_fusion.h"
+#include "splitfusion/lib/tsdf/internal/rigid_fusion.h"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 
@@ -16,23 +16,25 @@
 // What has been included is for any processor, what follows for these alone:
 // no function of it is called from elsewhere.
 #pragma GCC push_options
-#pragma GCC target("arch=x86-64-v4")
+#pragma GCC target("avx2")
 // Of the compiler's own header: GCC bug 105593.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
 
+#include "splitfusion/lib/tsdf/internal/avx2_lanes.h"
 #include "splitfusion/lib/tsdf/internal/fuse_block.h"
-#include "splitfusion/lib/tsdf/internal/wide_lanes.h"
 
 namespace splitfusion {
 namespace internal {
+namespace {
 
-void FuseRigidWide(const FusionView& view, const float steps[3][3],
-                   RigidBlock* blocks, int count) {
+void Fuse(const FusionView& view, const float steps[3][3], RigidBlock* blocks,
+          int count) {
   const FusionView local = view;  // Which no voxel's address can be that of.
-  FuseRigid<SixteenLanes>(local, steps, blocks, count);
+  FuseRigid<Avx2Lanes>(local, steps, blocks, count);
 }
 
+}  // namespace
 }  // namespace internal
 }  // namespace splitfusion
 
@@ -41,7 +43,9 @@ void FuseRigidWide(const FusionView& view, const float steps[3][3],
 namespace splitfusion {
 namespace internal {
 
-bool HasWideLanes() { return __builtin_cpu_supports("x86-64-v4"); }
+RigidFusion Avx2Fusion() {
+  return __builtin_cpu_supports("avx2") ? Fuse : nullptr;
+}
 
 }  // namespace internal
 }  // namespace splitfusion
@@ -51,12 +55,7 @@ bool HasWideLanes() { return __builtin_cpu_supports("x86-64-v4"); }
 namespace splitfusion {
 namespace internal {
 
-bool HasWideLanes() { return false; }
-
-void FuseRigidWide(const FusionView& view, const float steps[3][3],
-                   RigidBlock* blocks, int count) {
-  FuseRigidNarrow(view, steps, blocks, count);
-}
+RigidFusion Avx2Fusion() { return nullptr; }
 
 }  // namespace internal
 }  // namespace splitfusion

@@ -1,5 +1,5 @@
-#ifndef SPLITFUSION_LIB_TSDF_INTERNAL_WIDE_LANES_H_
-#define SPLITFUSION_LIB_TSDF_INTERNAL_WIDE_LANES_H_
+#ifndef SPLITFUSION_LIB_TSDF_INTERNAL_AVX512_LANES_H_
+#define SPLITFUSION_LIB_TSDF_INTERNAL_AVX512_LANES_H_
 
 #include <immintrin.h>
 
@@ -78,17 +78,6 @@ struct SixteenLanes {
     return _mm512_castsi512_ps((__m512i)bits);
   }
 
-  /// Two indices, none negative, at once: half as many loads.
-  struct TwoIndices {
-    explicit SPLITFUSION_INLINE TwoIndices(const std::int32_t index[2]) {
-      std::uint64_t both;
-      std::memcpy(&both, index, sizeof(both));
-      first = both & UINT32_MAX;
-      second = both >> 32;
-    }
-    std::uint64_t first, second;
-  };
-
   /// Eight pairs of numbers at `index` of an array of pairs.
   static SPLITFUSION_INLINE __m512
   GatherEightPairs(const float (*pairs)[2], const std::int32_t index[8]) {
@@ -143,4 +132,4 @@ struct SixteenLanes {
 }  // namespace internal
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_TSDF_INTERNAL_WIDE_LANES_H_
+#endif  // SPLITFUSION_LIB_TSDF_INTERNAL_AVX512_LANES_H_
