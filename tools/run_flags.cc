@@ -37,8 +37,9 @@ DEFINE_string(solver, "gn_pcg",
 DEFINE_string(linear_solver, "auto",
               "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
               "or cgnr.");
-DEFINE_string(preconditioner, "jacobi",
-              "Of gn_pcg and cgnr: jacobi or identity; of gn_pcg: block_ic0.");
+DEFINE_string(preconditioner, "auto",
+              "Of gn_pcg: two_level (auto), jacobi, block_ic0 or identity; of "
+              "cgnr: jacobi (auto) or identity.");
 DEFINE_string(trust_region, "levenberg_marquardt",
               "levenberg_marquardt or dogleg.");
 DEFINE_int32(solver_threads, 1,

@@ -119,6 +119,52 @@ void AddTransposedProduct(const double* a, const double* b, double* out) {
   AddRowProducts(a, b, 6, 6, out);
 }
 
+namespace {
+
+/// B P of one row of a block: [omega, tau] as a force at the end of the arm.
+SPLITFUSION_INLINE void CarryRow(const double* from, const double* arm,
+                                 double* to) {
+  to[0] = from[0] + (arm[1] * from[5] - arm[2] * from[4]);
+  to[1] = from[1] + (arm[2] * from[3] - arm[0] * from[5]);
+  to[2] = from[2] + (arm[0] * from[4] - arm[1] * from[3]);
+  for (int c = 3; c < 6; ++c) to[c] = from[c];
+}
+
+/// P^T B of a block, in place.
+SPLITFUSION_INLINE void CarryColumns(const double* arm, double block[6][6]) {
+  for (int c = 0; c < 6; ++c) {
+    block[0][c] += arm[1] * block[5][c] - arm[2] * block[4][c];
+    block[1][c] += arm[2] * block[3][c] - arm[0] * block[5][c];
+    block[2][c] += arm[0] * block[4][c] - arm[1] * block[3][c];
+  }
+}
+
+}  // namespace
+
+SPLITFUSION_VECTOR_CLONES
+void AddRigidlyCarried(int size, const int* row_begin, const int* columns,
+                       const double* blocks, const double* arms,
+                       const int* patches, const int* targets, double* out) {
+  for (int i = 0; i < size; ++i) {
+    for (int k = row_begin[i]; k < row_begin[i + 1]; ++k) {
+      const int j = columns[k];
+      double moved[6][6];
+      for (int r = 0; r < 6; ++r) {
+        CarryRow(blocks + kBlock * k + 6 * r, arms + 3 * j, moved[r]);
+      }
+      CarryColumns(arms + 3 * i, moved);
+      double* sum = out + kBlock * targets[k];
+      const int side = patches[j] - patches[i];
+      if (side >= 0) {
+        for (int e = 0; e < kBlock; ++e) sum[e] += moved[e / 6][e % 6];
+      }
+      if (side < 0 || (side == 0 && i != j)) {
+        for (int e = 0; e < kBlock; ++e) sum[e] += moved[e % 6][e / 6];
+      }
+    }
+  }
+}
+
 SPLITFUSION_VECTOR_CLONES
 void MultiplySymmetric(int size, const int* row_begin, const int* columns,
                        const double* blocks, const double* x, double* y) {

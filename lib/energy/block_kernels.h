@@ -22,6 +22,14 @@ void AddGradient(const double* residuals, const double* rows, int count,
 /// out += a^T b for blocks.
 void AddTransposedProduct(const double* a, const double* b, double* out);
 
+/// Adds P^T A P to `out`, A as for MultiplySymmetric(): row i of P is
+/// [1 0; -[arm_i]x 1], which carries a twist [omega, tau] along arm_i (three
+/// numbers a row), at column patches[i]. Block k of A is added to block
+/// targets[k].
+void AddRigidlyCarried(int size, const int* row_begin, const int* columns,
+                       const double* blocks, const double* arms,
+                       const int* patches, const int* targets, double* out);
+
 /// y = A x for a symmetric A of `size` block rows, of which row i holds the
 /// blocks row_begin[i] .. row_begin[i + 1] of the upper triangle, the diagonal
 /// first.

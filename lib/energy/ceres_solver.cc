@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <memory>
+#include <set>
+#include <string>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
@@ -104,8 +106,10 @@ ceres::Solver::Options CeresOptions(const SolverOptions& options,
   }
   ceres::StringToLinearSolverType(Upper(linear_solver),
                                   &ceres_options.linear_solver_type);
-  ceres::StringToPreconditionerType(Upper(options.preconditioner),
-                                    &ceres_options.preconditioner_type);
+  const bool is_auto = options.preconditioner == "auto";
+  ceres::StringToPreconditionerType(
+      Upper(is_auto ? "jacobi" : options.preconditioner),
+      &ceres_options.preconditioner_type);
   ceres::StringToTrustRegionStrategyType(
       Upper(options.trust_region), &ceres_options.trust_region_strategy_type);
   ceres_options.num_threads = options.threads;
@@ -158,11 +162,15 @@ void SolverOptions::Check() const {
               "linear_solver", linear_solver,
               "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
               "or cgnr");
-  const bool known = preconditioner == "identity" || preconditioner == "jacobi";
-  CheckOption(known || preconditioner == "block_ic0", "preconditioner",
-              preconditioner, "identity, jacobi or block_ic0");
-  CheckOption(known || solver == "gn_pcg", "preconditioner", preconditioner,
-              "identity or jacobi with solver " + solver);
+  const auto preconditioner_is = [&](const std::set<std::string>& names) {
+    return names.count(preconditioner) > 0;
+  };
+  const bool for_all = preconditioner_is({"auto", "identity", "jacobi"});
+  CheckOption(for_all || preconditioner_is({"block_ic0", "two_level"}),
+              "preconditioner", preconditioner,
+              "auto, identity, jacobi, block_ic0 or two_level");
+  CheckOption(for_all || solver == "gn_pcg", "preconditioner", preconditioner,
+              "auto, identity or jacobi with solver " + solver);
   CheckOption(trust_region == "levenberg_marquardt" || trust_region == "dogleg",
               "trust_region", trust_region, "levenberg_marquardt or dogleg");
   CheckOption(trust_region != "dogleg" || linear_solver != "cgnr",

@@ -48,7 +48,7 @@ class GaussNewton {
       : options_(options),
         problem_(input, graph),
         matrix_(problem_.MakeMatrix()),
-        linear_solver_(MakeLinearSolver(options)),
+        linear_solver_(MakeLinearSolver(options, graph)),
         diagonal_(graph.size()),
         twists_(kTwistSize * graph.size(), 0.0),
         radius_(options.initial_radius) {

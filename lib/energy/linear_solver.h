@@ -28,8 +28,10 @@ class LinearSolver {
                                std::vector<Vector6>* x) = 0;
 };
 
-/// The linear solver of gn_pcg or gn_cholesky; `options` must outlive it.
-std::unique_ptr<LinearSolver> MakeLinearSolver(const SolverOptions& options);
+/// The linear solver of gn_pcg or gn_cholesky for the twists of the graph's
+/// nodes, as they are now; `options` must outlive it.
+std::unique_ptr<LinearSolver> MakeLinearSolver(const SolverOptions& options,
+                                               const DeformationGraph& graph);
 
 /// Supernodal Cholesky factorisation by CHOLMOD. Nodes are ordered once, for
 /// the pattern of the first matrix; later ones must have the same.

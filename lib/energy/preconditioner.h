@@ -19,13 +19,18 @@ class Preconditioner {
                        std::vector<Vector6>* out) const = 0;
 };
 
+/// Inverses of the diagonal blocks of a positive definite matrix.
+Blocks6 InverseDiagonal(const SymmetricBlockMatrix& matrix);
+
 /// Preconditioner of a matrix: identity, jacobi (inverses of the diagonal
-/// blocks) or block_ic0 (incomplete Cholesky factor with the blocks of the
-/// matrix itself).
+/// blocks), block_ic0 (incomplete Cholesky factor with the blocks of the
+/// matrix itself) or two_level (see TwoLevel), which auto is, too.
+/// `centers`: g_i + t_i of the nodes, metres; two_level alone asks for them.
 ///
 /// @throw InputError on an unknown name; lists the known ones.
 std::unique_ptr<Preconditioner> MakePreconditioner(
-    const std::string& name, const SymmetricBlockMatrix& matrix);
+    const std::string& name, const SymmetricBlockMatrix& matrix,
+    const std::vector<Eigen::Vector3d>& centers);
 
 }  // namespace splitfusion
 

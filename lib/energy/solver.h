@@ -20,8 +20,9 @@ struct SolverOptions {
   /// sparse_normal_cholesky), dense_qr, dense_normal_cholesky,
   /// sparse_normal_cholesky, cgnr.
   std::string linear_solver = "auto";
-  /// For cgnr and gn_pcg: identity or jacobi; for gn_pcg block_ic0 as well.
-  std::string preconditioner = "jacobi";
+  /// Of gn_pcg: two_level, jacobi, block_ic0 or identity, see
+  /// MakePreconditioner(); of cgnr: jacobi or identity. "auto" is the first.
+  std::string preconditioner = "auto";
   /// levenberg_marquardt or dogleg.
   std::string trust_region = "levenberg_marquardt";
   int threads = 1;         ///< Of Ceres; more change the last digits.

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <limits>
+#include <memory>
+#include <string>
 
 #include "splitfusion/lib/energy/block_ic0.h"
 #include "splitfusion/lib/energy/linear_solver.h"
@@ -57,6 +59,15 @@ class BlockMatrixTest : public ::testing::Test {
     return Eigen::Map<const Eigen::VectorXd>(x[0].data(), 6 * kNodes);
   }
 
+  /// Nodes side by side.
+  static std::unique_ptr<Preconditioner> Make(
+      const std::string& name, const SymmetricBlockMatrix& matrix) {
+    std::vector<Eigen::Vector3d> centers;
+    for (int i = 0; i < matrix.size(); ++i)
+      centers.emplace_back(0.04 * i, 0, 0);
+    return MakePreconditioner(name, matrix, centers);
+  }
+
   SymmetricBlockMatrix matrix_;
   Eigen::MatrixXd dense_;
 };
@@ -77,8 +88,8 @@ TEST_F(BlockMatrixTest, PcgSolvesToTheToleranceAsked) {
   const std::vector<Vector6> b = RandomVector(6);
   for (const double tolerance : {1e-2, 1e-6, 1e-10}) {
     std::vector<Vector6> x;
-    const CgResult result = SolveByPcg(
-        matrix_, *MakePreconditioner("jacobi", matrix_), b, tolerance, 500, &x);
+    const CgResult result =
+        SolveByPcg(matrix_, *Make("jacobi", matrix_), b, tolerance, 500, &x);
     EXPECT_LE(result.relative_residual, tolerance);
     EXPECT_LE((dense_ * Flat(x) - Flat(b)).norm(),
               (1.001 * tolerance + 1e-12) * Flat(b).norm());
@@ -89,9 +100,9 @@ TEST_F(BlockMatrixTest, PcgSolvesToTheToleranceAsked) {
 TEST_F(BlockMatrixTest, EveryPreconditionerLeadsToTheSolution) {
   const std::vector<Vector6> b = RandomVector(6);
   int jacobi = 0;
-  for (const char* name : {"identity", "jacobi", "block_ic0"}) {
+  for (const char* name : {"identity", "jacobi", "block_ic0", "two_level"}) {
     std::vector<Vector6> x, z(kNodes);
-    const auto preconditioner = MakePreconditioner(name, matrix_);
+    const auto preconditioner = Make(name, matrix_);
     const double product = preconditioner->Apply(b, &z);
     EXPECT_NEAR(product, Flat(b).dot(Flat(z)), 1e-12 * product);
     const CgResult result =
@@ -145,16 +156,15 @@ TEST_F(BlockMatrixTest, CholeskySolvesAndSaysWhereItCannot) {
 }
 
 TEST_F(BlockMatrixTest, UnknownPreconditionersAreRefused) {
-  ExpectInputError([&] { MakePreconditioner("ilu", matrix_); },
-                   "preconditioner = ilu: expected identity, jacobi or "
-                   "block_ic0");
+  ExpectInputError([&] { Make("ilu", matrix_); },
+                   "preconditioner = ilu: expected auto, identity, jacobi, "
+                   "block_ic0 or two_level");
 }
 
 TEST_F(BlockMatrixTest, PcgStopsAtItsIterations) {
   std::vector<Vector6> x;
-  const CgResult result =
-      SolveByPcg(matrix_, *MakePreconditioner("jacobi", matrix_),
-                 RandomVector(6), 1e-12, 3, &x);
+  const CgResult result = SolveByPcg(matrix_, *Make("jacobi", matrix_),
+                                     RandomVector(6), 1e-12, 3, &x);
   EXPECT_EQ(result.iterations, 3);
   EXPECT_GT(result.relative_residual, 1e-12);
   EXPECT_LT(result.relative_residual, 10);
@@ -164,8 +174,8 @@ TEST_F(BlockMatrixTest, OneIterationSolvesWhatIsBlockDiagonal) {
   SymmetricBlockMatrix diagonal(kNodes, {});
   for (int i = 0; i < kNodes; ++i) diagonal.Diagonal(i) = matrix_.Diagonal(i);
   std::vector<Vector6> x;
-  EXPECT_EQ(SolveByPcg(diagonal, *MakePreconditioner("jacobi", diagonal),
-                       RandomVector(8), 1e-9, 50, &x)
+  EXPECT_EQ(SolveByPcg(diagonal, *Make("jacobi", diagonal), RandomVector(8),
+                       1e-9, 50, &x)
                 .iterations,
             1);
 }
@@ -173,16 +183,14 @@ TEST_F(BlockMatrixTest, OneIterationSolvesWhatIsBlockDiagonal) {
 TEST_F(BlockMatrixTest, ZeroAndUndefinedRightSidesEndAtOnce) {
   std::vector<Vector6> x;
   std::vector<Vector6> b(kNodes, Vector6::Zero());
-  EXPECT_EQ(SolveByPcg(matrix_, *MakePreconditioner("jacobi", matrix_), b, 1e-6,
-                       50, &x)
-                .iterations,
-            0);
+  EXPECT_EQ(
+      SolveByPcg(matrix_, *Make("jacobi", matrix_), b, 1e-6, 50, &x).iterations,
+      0);
   EXPECT_EQ(Flat(x).norm(), 0);
   b[2][3] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_LE(SolveByPcg(matrix_, *MakePreconditioner("jacobi", matrix_), b, 1e-6,
-                       50, &x)
-                .iterations,
-            50);
+  EXPECT_LE(
+      SolveByPcg(matrix_, *Make("jacobi", matrix_), b, 1e-6, 50, &x).iterations,
+      50);
 }
 
 }  // namespace

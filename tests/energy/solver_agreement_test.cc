@@ -93,6 +93,8 @@ constexpr char kLm[] = "levenberg_marquardt";
 INSTANTIATE_TEST_SUITE_P(
     Names, EverySolver,
     ::testing::Values(
+        Choice{"gn_pcg", "auto", "auto", kLm},
+        Choice{"gn_pcg", "auto", "two_level", kLm},
         Choice{"gn_pcg", "auto", "jacobi", kLm},
         Choice{"gn_pcg", "auto", "identity", kLm},
         Choice{"gn_pcg", "auto", "block_ic0", kLm},
@@ -101,6 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
         Choice{"ceres", "dense_qr", "jacobi", kLm},
         Choice{"ceres", "dense_normal_cholesky", "jacobi", kLm},
         Choice{"ceres", "sparse_normal_cholesky", "jacobi", kLm},
+        Choice{"ceres", "cgnr", "auto", kLm},
         Choice{"ceres", "cgnr", "jacobi", kLm},
         Choice{"ceres", "cgnr", "identity", kLm},
         Choice{"ceres", "auto", "jacobi", "dogleg"},

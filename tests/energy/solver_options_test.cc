@@ -35,25 +35,27 @@ TEST(SolverOptions, UnknownNamesListTheKnownOnes) {
   ExpectRefused([](SolverOptions* o) { o->solver = "lm"; },
                 "solver = lm: expected gn_pcg, gn_cholesky or ceres");
   ExpectRefused([](SolverOptions* o) { o->preconditioner = "schur_jacobi"; },
-                "preconditioner = schur_jacobi: expected identity, jacobi or "
-                "block_ic0");
+                "preconditioner = schur_jacobi: expected auto, identity, "
+                "jacobi, block_ic0 or two_level");
   ExpectRefused([](SolverOptions* o) { o->trust_region = "newton"; },
                 "trust_region = newton: expected levenberg_marquardt or "
                 "dogleg");
 }
 
-TEST(SolverOptions, IncompleteFactorsAreOfGnPcgAlone) {
-  SolverOptions options;
-  options.preconditioner = "block_ic0";
-  EXPECT_NO_THROW(options.Check());
-  for (const std::string solver : {"ceres", "gn_cholesky"}) {
-    ExpectRefused(
-        [&](SolverOptions* o) {
-          o->solver = solver;
-          o->preconditioner = "block_ic0";
-        },
-        "preconditioner = block_ic0: expected identity or jacobi with solver " +
-            solver);
+TEST(SolverOptions, PreconditionersOfOurOwnAreOfGnPcgAlone) {
+  for (const std::string name : {"block_ic0", "two_level"}) {
+    SolverOptions options;
+    options.preconditioner = name;
+    EXPECT_NO_THROW(options.Check());
+    for (const std::string solver : {"ceres", "gn_cholesky"}) {
+      ExpectRefused(
+          [&](SolverOptions* o) {
+            o->solver = solver;
+            o->preconditioner = name;
+          },
+          "preconditioner = " + name +
+              ": expected auto, identity or jacobi with solver " + solver);
+    }
   }
 }
 

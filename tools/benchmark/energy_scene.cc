@@ -218,7 +218,8 @@ MeasuredSystem::MeasuredSystem(const EnergyScene& scene)
     : twists(6 * scene.graph.size(), 0.0), matrix(0, {}), damped(0, {}) {
   const Energy energy = EnergyScene::MakeEnergy(/*custom=*/false);
   const SurfaceProblem problem = scene.Problem(energy);
-  const SolverOptions options = EnergyScene::Options("gn_pcg");
+  SolverOptions options = EnergyScene::Options("gn_pcg");
+  options.preconditioner = "jacobi";  // As the floor has it.
   BlockProblem blocks(problem, scene.graph);
   matrix = blocks.MakeMatrix();
   radius = options.initial_radius;
@@ -226,8 +227,8 @@ MeasuredSystem::MeasuredSystem(const EnergyScene& scene)
     blocks.Evaluate(twists, /*with_jacobians=*/true);
     blocks.Assemble(&matrix, &gradient);
     damped = Damped(matrix, radius);
-    solution =
-        MakeLinearSolver(options)->Solve(damped, Negative(gradient), &step);
+    solution = MakeLinearSolver(options, scene.graph)
+                   ->Solve(damped, Negative(gradient), &step);
     if (i == EnergyScene::kIterations) return;
     for (int k = 0; k < 6 * scene.graph.size(); ++k) {
       twists[k] += step[k / 6][k % 6];
