@@ -24,8 +24,10 @@ void AddTransposedProduct(const double* a, const double* b, double* out);
 
 /// Adds P^T A P to `out`, A as for MultiplySymmetric(): row i of P is
 /// [1 0; -[arm_i]x 1], which carries a twist [omega, tau] along arm_i (three
-/// numbers a row), at column patches[i]. Block k of A is added to block
-/// targets[k].
+/// numbers a row), at column patches[i]. Of `out` the upper triangle is stored,
+/// too: block k of A, row i and column j, is added to block targets[k], that of
+/// the lower patch as row; transposed if that is patches[j], both ways if the
+/// patches are one and i, j are not.
 void AddRigidlyCarried(int size, const int* row_begin, const int* columns,
                        const double* blocks, const double* arms,
                        const int* patches, const int* targets, double* out);

@@ -25,7 +25,7 @@ Blocks6 InverseDiagonal(const SymmetricBlockMatrix& matrix);
 /// Preconditioner of a matrix: identity, jacobi (inverses of the diagonal
 /// blocks), block_ic0 (incomplete Cholesky factor with the blocks of the
 /// matrix itself) or two_level (see TwoLevel), which auto is, too.
-/// `centers`: g_i + t_i of the nodes, metres; two_level alone asks for them.
+/// `centers`: g_i + t_i of the nodes, metres; nothing else asks for them.
 ///
 /// @throw InputError on an unknown name; lists the known ones.
 std::unique_ptr<Preconditioner> MakePreconditioner(

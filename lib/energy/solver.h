@@ -21,7 +21,8 @@ struct SolverOptions {
   /// sparse_normal_cholesky, cgnr.
   std::string linear_solver = "auto";
   /// Of gn_pcg: two_level, jacobi, block_ic0 or identity, see
-  /// MakePreconditioner(); of cgnr: jacobi or identity. "auto" is the first.
+  /// MakePreconditioner(); of cgnr: jacobi or identity. "auto" is the first of
+  /// either.
   std::string preconditioner = "auto";
   /// levenberg_marquardt or dogleg.
   std::string trust_region = "levenberg_marquardt";

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "splitfusion/lib/energy/block_kernels.h"
@@ -12,6 +13,10 @@ namespace {
 /// Nodes of a patch. With larger ones iterations get more (24: 24 instead of 18
 /// in the mean of a sequence), with smaller ones the factorisation dearer.
 constexpr int kPatchNodes = 12;
+
+/// What the diagonal of P^T A P is raised by, relative to that of A: a part that
+/// nothing holds has no stiffness there at all but for the damping.
+constexpr double kRaise = 1e-9;
 
 /// By node, those that it shares blocks with: of node i those from begin[i] to
 /// begin[i + 1].
@@ -87,6 +92,10 @@ SymmetricBlockMatrix CarriedByPatches(
                     matrix.columns().data(), matrix.blocks().data()->data(),
                     arms.data()->data(), patch.data(), targets.data(),
                     coarse.blocks().data()->data());
+  for (int i = 0; i < matrix.size(); ++i) {
+    coarse.Diagonal(patch[i]).diagonal() +=
+        kRaise * matrix.Diagonal(i).diagonal();
+  }
   return coarse;
 }
 
@@ -119,6 +128,7 @@ std::vector<Eigen::Vector3d> ArmsOf(
 NodePatches MakePatches(const SymmetricBlockMatrix& matrix,
                         const std::vector<Eigen::Vector3d>& centers,
                         int largest) {
+  assert(static_cast<int>(centers.size()) == matrix.size() && largest > 0);
   const Neighbors neighbors(matrix);
   NodePatches patches;
   patches.of_node.assign(matrix.size(), -1);

@@ -18,9 +18,9 @@ struct NodePatches {
   int size() const { return static_cast<int>(centers.size()); }
 };
 
-/// Divides all nodes into connected patches of at most `largest`. A patch with
-/// less than a third of that joins one beside it, if there is one, which then
-/// has more.
+/// Divides all nodes into connected patches of at most `largest`; then what has
+/// less than a third of that joins a patch beside it, if there is one. That one
+/// may get larger, by any number of small ones.
 NodePatches MakePatches(const SymmetricBlockMatrix& matrix,
                         const std::vector<Eigen::Vector3d>& centers,
                         int largest);

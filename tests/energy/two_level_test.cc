@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -10,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/lib/energy/block_kernels.h"
 #include "splitfusion/lib/energy/pcg.h"
 #include "support/sample_graphs.h"
 
@@ -97,7 +101,8 @@ int Iterations(const SymmetricBlockMatrix& matrix,
                const Preconditioner& preconditioner) {
   const std::vector<Vector6> b = RandomVector(matrix.size(), /*seed=*/4);
   std::vector<Vector6> x;
-  const CgResult result = SolveByPcg(matrix, preconditioner, b, 1e-6, 5000, &x);
+  const CgResult result =
+      SolveByPcg(matrix, preconditioner, b, 1e-6, 20000, &x);
   EXPECT_LE(result.relative_residual, 1e-6);
   std::vector<Vector6> product(b.size());
   matrix.Multiply(x, &product);
@@ -115,10 +120,9 @@ TEST(MakePatches, AreConnectedAndCoverAllNodes) {
   std::map<int, std::set<int>> members;
   for (int i = 0; i < matrix.size(); ++i) members[patches.of_node[i]].insert(i);
   ASSERT_EQ(static_cast<int>(members.size()), patches.size());
-  EXPECT_GE(patches.size(), matrix.size() / (2 * kLargest));
-  EXPECT_LE(patches.size(), matrix.size() / (kLargest / 3));
   for (const auto& [patch, nodes] : members) {
     EXPECT_GE(3 * nodes.size(), static_cast<std::size_t>(kLargest));
+    EXPECT_LE(nodes.size(), static_cast<std::size_t>(2 * kLargest));
     std::set<int> reached = {*nodes.begin()};
     for (std::size_t before = 0; before != reached.size();) {
       before = reached.size();
@@ -131,6 +135,94 @@ TEST(MakePatches, AreConnectedAndCoverAllNodes) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const int i : nodes) mean += centers[i] / nodes.size();
     EXPECT_LT((patches.centers[patch] - mean).norm(), 1e-12);
+  }
+}
+
+TEST(MakePatches, WhatIsSmallAndAloneStaysAlone) {
+  // A row of twelve, one pair and one node.
+  Pairs pairs = {{12, 13}};
+  for (int i = 0; i < 11; ++i) pairs.emplace_back(i, i + 1);
+  const SymmetricBlockMatrix matrix(15, pairs);
+  const NodePatches patches = MakePatches(matrix, GridCenters(1, 15), 12);
+  std::vector<int> expected(12, 0);
+  expected.insert(expected.end(), {1, 1, 2});
+  EXPECT_EQ(patches.of_node, expected);
+}
+
+TEST(BlockKernels, AMatrixIsCarriedAsByDenseProducts) {
+  const std::vector<int> patches = {2, 0, 1, 0, 2};
+  const auto arms = GridCenters(1, 5);
+  // A symmetric block for every pair that is there, of random numbers.
+  SymmetricBlockMatrix matrix(5, {{0, 1}, {0, 4}, {1, 2}, {1, 3}, {2, 4}});
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(30, 30);
+  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(30, 18);
+  SymmetricBlockMatrix coarse(3, {{0, 1}, {0, 2}, {1, 2}});
+  std::vector<int> targets;
+  for (int i = 0; i < 5; ++i) {
+    for (int k = matrix.row_begin()[i]; k < matrix.row_begin()[i + 1]; ++k) {
+      const int j = matrix.columns()[k];
+      const std::vector<Vector6> rows = RandomVector(6, /*seed=*/7 + k);
+      Block6& block = matrix.blocks()[k];
+      for (int r = 0; r < 6; ++r) block.row(r) = rows[r];
+      if (i == j) block = (block + block.transpose()).eval();
+      dense.block<6, 6>(6 * i, 6 * j) = block;
+      dense.block<6, 6>(6 * j, 6 * i) = block.transpose();
+      const auto [a, b] = std::minmax(patches[i], patches[j]);
+      targets.push_back(coarse.Index(a, b));
+    }
+    // tau_i = tau_a + omega_a x arm
+    auto own = p.block<6, 6>(6 * i, 6 * patches[i]);
+    own.setIdentity();
+    for (int axis = 0; axis < 3; ++axis) {
+      own.block<3, 1>(3, axis) = Eigen::Vector3d::Unit(axis).cross(arms[i]);
+    }
+  }
+  AddRigidlyCarried(5, matrix.row_begin().data(), matrix.columns().data(),
+                    matrix.blocks().data()->data(), arms.data()->data(),
+                    patches.data(), targets.data(),
+                    coarse.blocks().data()->data());
+  const Eigen::MatrixXd expected = p.transpose() * dense * p;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a; b < 3; ++b) {
+      const Eigen::MatrixXd difference = coarse.blocks()[coarse.Index(a, b)] -
+                                         expected.block<6, 6>(6 * a, 6 * b);
+      EXPECT_LT(difference.norm(), 1e-12 * expected.norm()) << a << " " << b;
+    }
+  }
+}
+
+// One patch: what is added to block Jacobi is the best rigid motion of it.
+TEST(TwoLevel, OnePatchIsCarriedAsARigidBody) {
+  constexpr int kNodes = 12;
+  const auto centers = GridCenters(3, 4);
+  const SymmetricBlockMatrix matrix =
+      HeldMatrix(GridPairs(3, 4), centers, /*held=*/2);
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& center : centers) mean += center / kNodes;
+  // Columns of P, and A P.
+  std::vector<std::vector<Vector6>> p(6, std::vector<Vector6>(kNodes)), ap = p;
+  for (int d = 0; d < 6; ++d) {
+    for (int i = 0; i < kNodes; ++i) {
+      p[d][i] = Vector6::Unit(d);
+      if (d >= 3) continue;
+      p[d][i].tail<3>() = Eigen::Vector3d::Unit(d).cross(centers[i] - mean);
+    }
+    matrix.Multiply(p[d], &ap[d]);
+  }
+  const std::vector<Vector6> x = RandomVector(kNodes, 6);
+  Eigen::Matrix<double, 6, 6> coarse;
+  Vector6 right;
+  for (int a = 0; a < 6; ++a) {
+    for (int b = 0; b < 6; ++b) coarse(a, b) = Dot(p[a], ap[b]);
+    right[a] = Dot(p[a], x);
+  }
+  const Vector6 motion = coarse.llt().solve(right);
+  std::vector<Vector6> y(kNodes), expected(kNodes);
+  TwoLevel(matrix, centers).Apply(x, &y);
+  MakePreconditioner("jacobi", matrix, centers)->Apply(x, &expected);
+  for (int i = 0; i < kNodes; ++i) {
+    for (int d = 0; d < 6; ++d) expected[i] += motion[d] * p[d][i];
+    EXPECT_LT((y[i] - expected[i]).norm(), 1e-5 * expected[i].norm());
   }
 }
 
@@ -149,8 +241,8 @@ TEST(TwoLevel, IsSymmetricAndPositive) {
   EXPECT_NEAR(Dot(a, mb), Dot(b, ma), 1e-9 * std::sqrt(aa * bb));
 }
 
-// What holds the arm is far away from most of it: Jacobi takes 4267 iterations
-// to get there, as many as the arm has nodes and more.
+// What holds the arm is far away from most of it: Jacobi takes more iterations
+// to get there than the arm, of 480 nodes, has unknowns; two levels take 685.
 TEST(TwoLevel, TheEndOfALongArmIsReachedSooner) {
   constexpr int kLength = 160, kWidth = 3;
   const auto centers = GridCenters(kLength, kWidth);
@@ -163,15 +255,21 @@ TEST(TwoLevel, TheEndOfALongArmIsReachedSooner) {
 
 // Without damping a part that nothing holds has no stiffness at all.
 TEST(TwoLevel, WhatNothingHoldsIsNoMatter) {
-  const auto centers = GridCenters(15, 15);
-  const SymmetricBlockMatrix matrix = ArapMatrix(GridPairs(15, 15), centers);
-  std::vector<Vector6> b(225), x;
-  matrix.Multiply(RandomVector(225, 5), &b);
-  const CgResult result =
-      SolveByPcg(matrix, TwoLevel(matrix, centers), b, 1e-6, 500, &x);
-  EXPECT_LE(result.relative_residual, 1e-6);
-  EXPECT_LT(result.iterations, 150);
-  for (const Vector6& v : x) EXPECT_TRUE(v.allFinite());
+  for (const int side : {3, 15}) {  // One patch, and many.
+    const int nodes = side * side;
+    const auto centers = GridCenters(side, side);
+    const SymmetricBlockMatrix matrix =
+        ArapMatrix(GridPairs(side, side), centers);
+    const std::vector<Vector6> truth = RandomVector(nodes, 5);
+    std::vector<Vector6> b(nodes), x;
+    matrix.Multiply(truth, &b);
+    const CgResult result =
+        SolveByPcg(matrix, TwoLevel(matrix, centers), b, 1e-6, 500, &x);
+    EXPECT_LE(result.relative_residual, 1e-6);
+    EXPECT_LT(result.iterations, 150);
+    // The rigid motion of all may be any, but none that is out of proportion.
+    EXPECT_LT(Dot(x, x), 100 * Dot(truth, truth)) << side;
+  }
 }
 
 TEST(TwoLevel, OneIterationSolvesWhatIsNotJoined) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <ostream>
 #include <random>
@@ -33,8 +34,12 @@ struct Block {
   std::array<std::int32_t, 512> color;
 
   FusedLeaf leaf() { return {distance.data(), weight.data(), color.data()}; }
+  /// Byte by byte.
   bool operator==(const Block& other) const {
-    return distance == other.distance && weight == other.weight &&
+    return std::memcmp(distance.data(), other.distance.data(),
+                       sizeof(distance)) == 0 &&
+           std::memcmp(weight.data(), other.weight.data(), sizeof(weight)) ==
+               0 &&
            color == other.color;
   }
 };
@@ -259,7 +264,8 @@ class FusionVersions : public VoxelFusion,
 TEST_P(FusionVersions, GivesTheNumbersOfThePortableOne) {
   const RigidFusion fuse = GetParam().get();
   if (fuse == nullptr) {
-    GTEST_SKIP() << "this processor has no " << GetParam().processor;
+    GTEST_SKIP() << "this processor, or this build, has no "
+                 << GetParam().processor;
   }
   int in_image = 0;
   for (int round = 0; round < 200; ++round) {
@@ -285,6 +291,39 @@ TEST_P(FusionVersions, GivesTheNumbersOfThePortableOne) {
     }
   }
   EXPECT_GT(in_image, 20);
+}
+
+TEST_P(FusionVersions, FusesBlocksInARowWithAndWithoutColor) {
+  const RigidFusion fuse = GetParam().get();
+  if (fuse == nullptr) {
+    GTEST_SKIP() << "this processor, or this build, has no "
+                 << GetParam().processor;
+  }
+  constexpr int kCount = 3;
+  int changed = 0;
+  for (int round = 0; round < 40; ++round) {
+    const Placement first = RandomPlacement(&random_);
+    const Steps steps(first.steps);
+    std::array<Block, kCount> blocks, expected;
+    std::vector<RigidBlock> rigid, expected_rigid;
+    for (int i = 0; i < kCount; ++i) {
+      Placement at = RandomPlacement(&random_);
+      at.steps = first.steps;
+      blocks[i] = expected[i] = RandomBlock(&random_);
+      rigid.push_back(at.ToBlock(kAll, &blocks[i]));
+      expected_rigid.push_back(at.ToBlock(kAll, &expected[i]));
+      if (round % 2 == 0) continue;
+      rigid[i].leaf.color = expected_rigid[i].leaf.color = nullptr;
+    }
+    PortableFusion()(image_.view(), steps.rows, expected_rigid.data(), kCount);
+    fuse(image_.view(), steps.rows, rigid.data(), kCount);
+    for (int i = 0; i < kCount; ++i) {
+      EXPECT_TRUE(blocks[i] == expected[i]) << "round " << round;
+      EXPECT_EQ(rigid[i].changed, expected_rigid[i].changed);
+      changed += rigid[i].changed;
+    }
+  }
+  EXPECT_GT(changed, kCount);
 }
 
 INSTANTIATE_TEST_SUITE_P(Processors, FusionVersions,

@@ -9,7 +9,8 @@
 //     /floor                as many products with the matrix
 //   gn_iteration            one iteration of --solver=gn_pcg, trial step
 //                           included, as the solver's report times it
-//     /floor                sums given Jacobians, conjugate gradients with block
+//     /floor                sums given Jacobians, conjugate gradients with
+//     block
 //                           Jacobi to the same tolerance
 //     /reference_36         Ceres, CGNR, one autodiff block of 36 a point
 //     /ceres_grouped        --solver=ceres --linear_solver=cgnr

@@ -40,9 +40,9 @@ struct FloorMatrix {
   int size() const { return static_cast<int>(row_begin.size()) - 1; }
 };
 
-/// What is the least to do in an iteration: given the rows of the Jacobian,
-/// sum them to normal equations and solve these. No residual is evaluated, no
-/// cost, no trial step.
+/// The barest iteration: given the rows of the Jacobian, sum them to normal
+/// equations and solve these by conjugate gradients with block Jacobi. No
+/// residual is evaluated, no cost, no trial step.
 class EnergyFloor {
  public:
   /// `points`: n = 6; `edges`: n = 2. Places the blocks.

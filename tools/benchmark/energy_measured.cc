@@ -98,6 +98,22 @@ bool SameMatrix(const FloorMatrix& floor, const SymmetricBlockMatrix& matrix) {
                     floor.blocks.size()) < kTolerance;
 }
 
+/// |A x + g| / |g| of the step x that the library takes by default.
+double DefaultResidual(const EnergyScene& scene, const MeasuredSystem& system,
+                       const SolverOptions& options) {
+  std::vector<Vector6> right = system.gradient, step;
+  for (Vector6& v : right) v = -v;
+  MakeLinearSolver(options, scene.graph)->Solve(system.damped, right, &step);
+  std::vector<Vector6> product(step.size());
+  system.damped.Multiply(step, &product);
+  double squared = 0, size = 0;
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    squared += (product[i] - right[i]).squaredNorm();
+    size += right[i].squaredNorm();
+  }
+  return std::sqrt(squared / size);
+}
+
 }  // namespace
 
 MeasuredEnergy::MeasuredEnergy()
@@ -126,6 +142,10 @@ std::string MeasuredEnergy::Disagreement() {
       Difference(floor_.solution().data(), system_.step.data()->data(),
                  6 * system_.step.size()) > kTolerance) {
     return "the floor's step is not the library's";
+  }
+  const SolverOptions options = EnergyScene::Options("gn_pcg");
+  if (DefaultResidual(scene_, system_, options) > options.eta) {
+    return "the default step does not solve the system";
   }
   const Energy energy = EnergyScene::MakeEnergy(/*custom=*/false);
   DeformationGraph graph = scene_.graph;

@@ -37,7 +37,8 @@ SPLITFUSION_INLINE void Prefetch(const FusedLeaf& from) {
   if (from.color != nullptr) __builtin_prefetch(from.color, 1, kLocality);
 }
 
-/// Whether a pack of a block begins a line of the cache.
+/// Whether a pack is the first of as many voxels as share a line of the cache,
+/// if the block begins one.
 template <typename Pack>
 constexpr bool BeginsLine(int pack) {
   constexpr int kLine = 64 / sizeof(float);
