@@ -190,6 +190,11 @@ void SolverOptions::Check() const {
   CheckOption(parameter_tolerance >= 0, "parameter_tolerance",
               parameter_tolerance, ">= 0");
   CheckOption(initial_radius > 0, "initial_radius", initial_radius, "> 0");
+  constexpr double kLeastRadius = 1e-32, kLargestRadius = 1e16;  // Of Ceres.
+  CheckOption(
+      solver != "ceres" ||
+          (initial_radius >= kLeastRadius && initial_radius <= kLargestRadius),
+      "initial_radius", initial_radius, "1e-32..1e16 with solver ceres");
 }
 
 SolverReport Minimize(const SurfaceProblem& problem,

@@ -86,6 +86,17 @@ TEST(SolverOptions, RefuseValuesOutOfRange) {
                 "parameter_tolerance = -1: expected >= 0");
   ExpectRefused([](SolverOptions* o) { o->initial_radius = 0; },
                 "initial_radius = 0: expected > 0");
+  for (const double radius : {1e30, 1e-40}) {
+    ExpectRefused(
+        [&](SolverOptions* o) {
+          o->solver = "ceres";
+          o->initial_radius = radius;
+        },
+        "expected 1e-32..1e16 with solver ceres");
+    SolverOptions options;
+    options.initial_radius = radius;
+    EXPECT_NO_THROW(options.Check());
+  }
 }
 
 }  // namespace
