@@ -33,18 +33,22 @@ struct Avx2Lanes : EightLanes {
     return _mm256_movemask_ps((__m256)flags) != 0;
   }
 
+  /// Two pairs of numbers at `index`, none negative, of an array of pairs.
+  static SPLITFUSION_INLINE __m128d TwoPairs(const float (*pairs)[2],
+                                             const std::int32_t index[2]) {
+    const TwoIndices at(index);
+    double pair[2];
+    std::memcpy(&pair[0], pairs[at.first], sizeof(double));
+    std::memcpy(&pair[1], pairs[at.second], sizeof(double));
+    return _mm_set_pd(pair[1], pair[0]);
+  }
+
   /// Reads pairs of numbers at `index`, none negative, of an array of pairs,
   /// and turns them round.
   static SPLITFUSION_INLINE void GatherPairs(const float (*pairs)[2],
                                              const std::int32_t index[8],
                                              Lanes* firsts, Lanes* seconds) {
-    const auto two = [&](int i) {
-      const TwoIndices at(index + i);
-      double pair[2];
-      std::memcpy(&pair[0], pairs[at.first], sizeof(double));
-      std::memcpy(&pair[1], pairs[at.second], sizeof(double));
-      return _mm_set_pd(pair[1], pair[0]);
-    };
+    const auto two = [&](int i) { return TwoPairs(pairs, index + i); };
     const __m256d low =
         _mm256_insertf128_pd(_mm256_castpd128_pd256(two(0)), two(4), 1);
     const __m256d high =

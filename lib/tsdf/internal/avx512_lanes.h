@@ -3,7 +3,7 @@
 
 #include <immintrin.h>
 
-#include "splitfusion/lib/tsdf/internal/lanes.h"
+#include "splitfusion/lib/tsdf/internal/avx2_lanes.h"
 
 namespace splitfusion {
 namespace internal {
@@ -82,11 +82,7 @@ struct SixteenLanes {
   static SPLITFUSION_INLINE __m512
   GatherEightPairs(const float (*pairs)[2], const std::int32_t index[8]) {
     const auto two = [&](int i) {
-      const TwoIndices at(index + i);
-      double pair[2];
-      std::memcpy(&pair[0], pairs[at.first], sizeof(double));
-      std::memcpy(&pair[1], pairs[at.second], sizeof(double));
-      return _mm_set_pd(pair[1], pair[0]);
+      return Avx2Lanes::TwoPairs(pairs, index + i);
     };
     const __m256d low =
         _mm256_insertf128_pd(_mm256_castpd128_pd256(two(0)), two(2), 1);
