@@ -1,20 +1,14 @@
 #include "splitfusion/lib/evaluation/depth_agreement.h"
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
 
-#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/error_histogram.h"
 #include "splitfusion/lib/evaluation/model_view.h"
-#include "splitfusion/lib/sequence/image_file.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
 
 namespace splitfusion {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Differences of one surface so far.
 struct Tally {
@@ -24,45 +18,6 @@ struct Tally {
 
 /// Tallies of surfaces by id.
 using Tallies = std::map<int, Tally>;
-
-void CheckSource(const RecordedRun& run) {
-  if (run.sequence.empty()) {
-    throw InputError(run.root + "/options.flags: no --sequence");
-  }
-  if (!fs::is_directory(run.sequence)) {
-    throw InputError(run.sequence +
-                     ": expected the folder of the sequence that "
-                     "options.flags names");
-  }
-  if (!run.camera) throw InputError(run.root + ": no camera intrinsics");
-}
-
-cv::Mat_<float> ReadLiveDepth(const RecordedRun& run,
-                              const RecordedFrame& frame) {
-  TumReaderOptions options = run.reading;
-  options.first_frame = frame.index;
-  options.max_frames = 1;
-  const Frame live = TumReader(run.sequence, options).Next().value();
-  if (live.stem != frame.stem) {
-    throw InputError(run.sequence + ": frame " + std::to_string(frame.index) +
-                     " is '" + live.stem + "': expected '" + frame.stem +
-                     "' as in frames.jsonl");
-  }
-  return live.depth;
-}
-
-cv::Mat_<std::uint16_t> ReadMask(const RecordedRun& run,
-                                 const RecordedFrame& frame,
-                                 const cv::Size& expected) {
-  const std::string path =
-      (fs::path(run.root) / "masks" / (frame.stem + ".png")).string();
-  const cv::Mat_<std::uint16_t> mask = ReadLabelImage(path);
-  if (mask.size() != expected) {
-    throw InputError(path + ": " + ToString(mask.size()) +
-                     " pixels: expected " + ToString(expected));
-  }
-  return mask;
-}
 
 /// Adds a live pixel of the tally's surface, at which the model shows the
 /// surface `shown` (-1 = nothing); both depths in metres.
