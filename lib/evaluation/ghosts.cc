@@ -9,8 +9,8 @@ namespace splitfusion {
 
 Ghosts CountGhosts(const TriangleMesh& background,
                    const TriangleMesh& static_truth) {
-  const std::vector<double> distances = DistancesToSurface(
-      background.vertices, static_truth, 2 * kGhostDistance);
+  const std::vector<double> distances =
+      DistancesToSurface(background.vertices, static_truth, 2 * kGhostDistance);
   Ghosts ghosts;
   ghosts.vertices = static_cast<int>(distances.size());
   ghosts.far = static_cast<int>(

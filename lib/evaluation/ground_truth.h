@@ -31,7 +31,7 @@ struct GroundTruth {
   std::string tracks;       ///< tracks.bin
   std::string labels;       ///< Folder label/ of STEM.png, instance per pixel.
   std::vector<PosedMeshFile> posed_meshes;  ///< mesh/instK_T.ply, by K and T.
-  std::map<int, TrueInstance> instances;  ///< By id, of labels.json.
+  std::map<int, TrueInstance> instances;    ///< By id, of labels.json.
 
   /// Ids of the instances that move: labels.json says so, or there is a mesh.
   std::set<int> MovingInstances() const;

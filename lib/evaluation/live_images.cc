@@ -43,10 +43,10 @@ LiveImages::LiveImages(const RecordedRun& run)
 }
 
 cv::Mat_<float> LiveImages::Depth(const RecordedFrame& frame) const {
-  CheckOption(frame.index >= 0 &&
-                  static_cast<std::size_t>(frame.index) < files_.size(),
-              sequence_ + ": frame", frame.index,
-              "one of its " + std::to_string(files_.size()));
+  CheckOption(
+      frame.index >= 0 && static_cast<std::size_t>(frame.index) < files_.size(),
+      sequence_ + ": frame", frame.index,
+      "one of its " + std::to_string(files_.size()));
   const fs::path path = fs::path(sequence_) / files_[frame.index].depth.file;
   const std::string stem = path.stem().string();
   if (stem != frame.stem) {

@@ -18,8 +18,8 @@ struct FrameShape {
 /// What one frame shows.
 struct FrameInspection {
   int frame = 0;
-  std::map<int, FrameShape> shapes;            // By surface.
-  std::map<int, InstanceSighting> sightings;   // By instance.
+  std::map<int, FrameShape> shapes;           // By surface.
+  std::map<int, InstanceSighting> sightings;  // By instance.
 };
 
 /// Pixels of every label, those with depth if `live` is not null.
@@ -123,9 +123,9 @@ void AddShape(const FrameShape& item, int frame, SurfaceShape* shape) {
   if (shape->stray) AddShare(item.stray.Share(), frame, &*shape->stray);
 }
 
-std::vector<SurfaceShape> Shapes(
-    const std::vector<AnimatedSurface>& surfaces, bool with_stray,
-    const std::vector<FrameInspection>& frames) {
+std::vector<SurfaceShape> Shapes(const std::vector<AnimatedSurface>& surfaces,
+                                 bool with_stray,
+                                 const std::vector<FrameInspection>& frames) {
   std::vector<SurfaceShape> shapes;
   for (const AnimatedSurface& surface : surfaces) {
     if (surface.background()) continue;

@@ -23,12 +23,12 @@ struct ShareOverFrames {
 
 /// The shape of one surface in the frames of a run.
 struct SurfaceShape {
-  int surface_id = 0;             ///< 0 is the background.
-  std::string surface_label;      ///< Its label.
-  int frames = 0;                 ///< Frames looked at that have a model.
-  ShareOverFrames stretched;      ///< StretchedArea::Share().
-  int stretched_triangles = 0;    ///< Of the worst frame.
-  double longest_edge = 0;        ///< Of all frames, metres.
+  int surface_id = 0;           ///< 0 is the background.
+  std::string surface_label;    ///< Its label.
+  int frames = 0;               ///< Frames looked at that have a model.
+  ShareOverFrames stretched;    ///< StretchedArea::Share().
+  int stretched_triangles = 0;  ///< Of the worst frame.
+  double longest_edge = 0;      ///< Of all frames, metres.
   std::optional<ShareOverFrames> stray;  ///< StrayArea::Share(), live depth
                                          ///< provided.
 };

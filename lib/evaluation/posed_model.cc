@@ -24,8 +24,9 @@ struct Corners {
   Eigen::Vector3f a, b, c;
 
   Corners(const TriangleMesh& mesh, const Eigen::Vector3i& t)
-      : a(mesh.vertices[t[0]]), b(mesh.vertices[t[1]]), c(mesh.vertices[t[2]]) {
-  }
+      : a(mesh.vertices[t[0]]),
+        b(mesh.vertices[t[1]]),
+        c(mesh.vertices[t[2]]) {}
 
   /// Twice the area, along the outward normal.
   Eigen::Vector3f Cross() const { return (b - a).cross(c - a); }

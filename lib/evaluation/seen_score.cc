@@ -33,8 +33,7 @@ int LivePixels(const cv::Mat_<std::uint16_t>& labels,
 
 /// Whether the live images show a point (camera frame) of an instance.
 bool IsShown(const Eigen::Vector3d& point, int instance,
-             const PinholeCamera& camera,
-             const cv::Mat_<std::uint16_t>& labels,
+             const PinholeCamera& camera, const cv::Mat_<std::uint16_t>& labels,
              const cv::Mat_<float>& depth) {
   if (!(point.z() > kNearest)) return false;
   const Eigen::Vector2d pixel = camera.Project(point);
@@ -72,12 +71,12 @@ class Witness {
     if (labels.empty()) return;
     const cv::Mat_<float> depth = live_.Depth(*occasion.frame);
     Look(occasion, labels, depth);
-    began_ = began_ || LivePixels(labels, depth, occasion.instance) >
-                           plain_view_pixels_;
+    began_ = began_ ||
+             LivePixels(labels, depth, occasion.instance) > plain_view_pixels_;
     if (!began_) return;
     const std::vector<double> weights = SeenWeights(occasion.truth.mesh);
-    const std::vector<Eigen::Vector3f> seen = SampleSurface(
-        occasion.truth.mesh, kSamples, kTruthSeed, weights);
+    const std::vector<Eigen::Vector3f> seen =
+        SampleSurface(occasion.truth.mesh, kSamples, kTruthSeed, weights);
     if (seen.empty()) return;
     frames_.push_back(occasion.frame->index);
     for (const AnimatedSurface& surface : surfaces_) {
@@ -125,9 +124,8 @@ class Witness {
     if (model.triangles.empty()) return;
     SeenFrame& score = scores_[surface.recorded().id][frame];
     score.frame = frame;
-    score.precision =
-        PartWithin(SampleSurface(model, kSamples, kModelSeed),
-                   occasion.truth.mesh);
+    score.precision = PartWithin(SampleSurface(model, kSamples, kModelSeed),
+                                 occasion.truth.mesh);
     score.recall = PartWithin(seen, model);
     score.f_score = HarmonicMean(score.precision, score.recall);
   }

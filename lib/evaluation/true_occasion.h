@@ -13,10 +13,10 @@ namespace splitfusion {
 
 /// A true mesh of an instance together with the frame of the run it belongs to.
 struct TrueOccasion {
-  int instance = 0;                       ///< Instance id.
-  const RecordedFrame* frame = nullptr;   ///< Not owned.
-  Rigid3d world_from_camera;              ///< True pose.
-  TrueSurface truth;                      ///< World frame.
+  int instance = 0;                      ///< Instance id.
+  const RecordedFrame* frame = nullptr;  ///< Not owned.
+  Rigid3d world_from_camera;             ///< True pose.
+  TrueSurface truth;                     ///< World frame.
 };
 
 /// The true meshes of all instances, by instance and time; those without a
