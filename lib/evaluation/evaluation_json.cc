@@ -117,7 +117,9 @@ Json InstanceJson(const InstanceError& error) {
     frames.push_back(FrameJson(item));
   }
   const InstanceMeans means = MeanOf(error);
-  Json json = {{"instance", error.instance}, {"name", error.name}};
+  Json json = {{"instance", error.instance},
+               {"name", error.name},
+               {"rigid", error.rigid}};
   json["surface_id"] = error.surface_id >= 0 ? Json(error.surface_id) : Json();
   json["surface_label"] = error.surface_label;
   json["surface_frames"] = means.surface_frames;

@@ -48,7 +48,8 @@ std::map<int, TrueInstance> ReadInstances(const std::string& path) {
     const auto json = nlohmann::json::parse(stream);
     for (const auto& item : json.at("instances")) {
       instances[item.at("id").get<int>()] = {item.at("name").get<std::string>(),
-                                             item.value("moving", false)};
+                                             item.value("moving", false),
+                                             item.value("rigid", false)};
     }
   } catch (const nlohmann::json::exception& error) {
     throw InputError(path + ": expected 'instances' with 'id' and 'name' (" +
@@ -68,9 +69,9 @@ std::set<int> GroundTruth::MovingInstances() const {
   return moving;
 }
 
-std::string GroundTruth::NameOf(int instance) const {
+TrueInstance GroundTruth::Find(int instance) const {
   const auto found = instances.find(instance);
-  return found != instances.end() ? found->second.name : "";
+  return found != instances.end() ? found->second : TrueInstance();
 }
 
 GroundTruth ReadGroundTruth(const std::string& folder) {

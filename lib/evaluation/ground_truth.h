@@ -21,6 +21,7 @@ struct PosedMeshFile {
 struct TrueInstance {
   std::string name;     ///< Of labels.json.
   bool moving = false;  ///< As labels.json says; false if it does not.
+  bool rigid = false;   ///< The same.
 };
 
 /// What is known about a sequence. Paths are empty where there is nothing.
@@ -35,8 +36,8 @@ struct GroundTruth {
 
   /// Ids of the instances that move: labels.json says so, or there is a mesh.
   std::set<int> MovingInstances() const;
-  /// Name of an instance; empty if it has none.
-  std::string NameOf(int instance) const;
+  /// An instance as labels.json has it, or else one without a name.
+  TrueInstance Find(int instance) const;
 };
 
 /// Finds ground truth in the subfolder `gt` of `folder` if that has a

@@ -35,6 +35,7 @@ void AddInstances(const std::vector<InstanceError>& instances,
                   Headline* headline) {
   PlainMean surface, seen, view, missing, stretched;
   for (const InstanceError& instance : instances) {
+    if (instance.rigid) continue;
     const InstanceMeans means = MeanOf(instance);
     if (means.surface_frames > 0) {
       surface.Add(means.surface.accuracy.statistics.mean);

@@ -9,7 +9,8 @@
 namespace splitfusion {
 
 /// The figures of a run that tables of many runs show. Those of instances are
-/// plain means over the instances that have them. Empty = not known.
+/// plain means over the instances that have them, people and whatever else
+/// deforms: rigid ones do not count. Empty = not known.
 struct Headline {
   std::optional<double> ate_m;            ///< RMSE.
   std::optional<double> rpe_m;            ///< Over one frame, RMSE.

@@ -159,7 +159,9 @@ InstanceError Describe(int id, const GroundTruth& truth,
                        const InstancePresence* presence) {
   InstanceError instance;
   instance.instance = id;
-  instance.name = truth.NameOf(id);
+  const TrueInstance described = truth.Find(id);
+  instance.name = described.name;
+  instance.rigid = described.rigid;
   if (matched != nullptr) {
     instance.surface_id = matched->recorded().id;
     instance.surface_label = matched->recorded().label;

@@ -52,12 +52,13 @@ struct InstanceFrameError {
 struct InstanceError {
   int instance = 0;           ///< Instance id.
   std::string name;           ///< Of the ground truth; may be empty.
+  bool rigid = false;         ///< Whether the ground truth calls it rigid.
   int surface_id = -1;        ///< The surface matched to it; -1 = none.
   std::string surface_label;  ///< Its label.
   std::vector<InstanceFrameError> frames;    ///< Where there is a true mesh.
   std::optional<InstancePresence> presence;  ///< If it is known.
-  std::optional<SeenScore> seen;             ///< If it is known.
-  std::optional<SurfaceShape> shape;         ///< Of the surface matched.
+  std::optional<SeenScore> seen;      ///< If it is known, and it is not rigid.
+  std::optional<SurfaceShape> shape;  ///< Of the surface matched.
 };
 
 /// Compares the surfaces of a run with the true meshes of moving instances.

@@ -85,6 +85,7 @@ void AddSeenScores(const std::vector<AnimatedSurface>& surfaces,
                               error.what());
   }
   for (InstanceError& instance : result->instances) {
+    if (instance.rigid) continue;
     const auto found = scores.find(instance.instance);
     if (found != scores.end() && !found->second.frames.empty()) {
       instance.seen = found->second;

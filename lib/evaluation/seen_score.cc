@@ -1,8 +1,11 @@
 #include "splitfusion/lib/evaluation/seen_score.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 
 #include "splitfusion/lib/evaluation/surface_error.h"
+#include "splitfusion/lib/geometry/kd_tree.h"
 
 namespace splitfusion {
 namespace {
@@ -16,6 +19,7 @@ constexpr double kDepthTolerance = 0.03;
 constexpr int kSamples = 30000;
 constexpr unsigned kModelSeed = 3;
 constexpr unsigned kTruthSeed = 4;
+constexpr unsigned kSeenSeed = 5;
 
 /// Surface id -> scores by frame.
 using Scores = std::map<int, std::map<int, SeenFrame>>;
@@ -55,6 +59,18 @@ bool IsShown(const Eigen::Vector3d& point, int instance,
   return false;
 }
 
+/// Part of the points that are nearer than kSeenThreshold to one of the others.
+double PartWithin(const std::vector<Eigen::Vector3f>& points,
+                  const KdTree& others) {
+  std::vector<double> distances(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    float distance = 0;
+    others.Nearest(points[i], &distance);
+    distances[i] = distance;
+  });
+  return FractionWithin(distances, kSeenThreshold);
+}
+
 /// What was seen of one instance so far, and what the surfaces make of it.
 class Witness {
  public:
@@ -76,11 +92,13 @@ class Witness {
     if (!began_) return;
     const std::vector<double> weights = SeenWeights(occasion.truth.mesh);
     const std::vector<Eigen::Vector3f> seen =
-        SampleSurface(occasion.truth.mesh, kSamples, kTruthSeed, weights);
+        SampleSurface(occasion.truth.mesh, kSamples, kSeenSeed, weights);
     if (seen.empty()) return;
+    const std::vector<Eigen::Vector3f> truth =
+        SampleSurface(occasion.truth.mesh, kSamples, kTruthSeed);
     frames_.push_back(occasion.frame->index);
     for (const AnimatedSurface& surface : surfaces_) {
-      Score(surface, occasion, seen);
+      Score(surface, occasion, truth, seen);
     }
   }
 
@@ -117,25 +135,20 @@ class Witness {
   }
 
   void Score(const AnimatedSurface& surface, const TrueOccasion& occasion,
+             const std::vector<Eigen::Vector3f>& truth,
              const std::vector<Eigen::Vector3f>& seen) {
     const int frame = occasion.frame->index;
     if (surface.background() || !surface.HasMotions(frame)) return;
     const TriangleMesh model = ModelInWorld(surface, occasion);
     if (model.triangles.empty()) return;
+    const std::vector<Eigen::Vector3f> points =
+        SampleSurface(model, kSamples, kModelSeed);
+    if (points.empty()) return;
     SeenFrame& score = scores_[surface.recorded().id][frame];
     score.frame = frame;
-    score.precision = PartWithin(SampleSurface(model, kSamples, kModelSeed),
-                                 occasion.truth.mesh);
-    score.recall = PartWithin(seen, model);
+    score.precision = PartWithin(points, KdTree(truth));
+    score.recall = PartWithin(seen, KdTree(points));
     score.f_score = HarmonicMean(score.precision, score.recall);
-  }
-
-  static double PartWithin(const std::vector<Eigen::Vector3f>& points,
-                           const TriangleMesh& surface) {
-    // Distances are clipped: what is farther must stay so.
-    return FractionWithin(
-        DistancesToSurface(points, surface, 2 * kSeenThreshold),
-        kSeenThreshold);
   }
 
   SeenScore Of(int surface) const {

@@ -43,7 +43,9 @@ struct SeenScore {
 /// seen) against the model. Frames count from the first true mesh on at which
 /// the instance has more than `plain_view_pixels` live pixels; one without a
 /// model of the surface counts 0. The model is put into the world with the true
-/// pose, so that errors of the camera do not count.
+/// pose, so that errors of the camera do not count. Distances are those between
+/// 30,000 random points on each surface, so a score is about 0.01 smaller than
+/// with exact ones.
 ///
 /// `label_folder`: label/ of the ground truth; occasions without a label image
 /// are left out.

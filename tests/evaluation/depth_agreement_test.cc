@@ -33,7 +33,7 @@ class DepthAgreementTest : public ::testing::Test {
     RecordedRun run = ReadRun(folder_ / "run");
     if (spoil) spoil(&run);
     const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
-    return CompareDepth(run, surfaces, every);
+    return CompareDepth(run, surfaces, every, plain_view_pixels_);
   }
 
   void ExpectRefused(const std::string& message) const {
@@ -41,6 +41,7 @@ class DepthAgreementTest : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  int plain_view_pixels_ = 8000;
 };
 
 /// Moves the plate towards the camera of frame 0.

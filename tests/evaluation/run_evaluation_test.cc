@@ -55,8 +55,8 @@ void SortByX(RecordedSurface* surface) {
 class RunEvaluationTest : public ::testing::Test {
  protected:
   RunEvaluationTest() {
-    options_.track_frame = 0;
-    options_.track_frames = 10;
+    options_.tracks.references = {0};
+    options_.tracks.frames = 10;
     options_.surface.samples = 5000;
     std::filesystem::create_directories(folder_ / "run");
     plate_.WriteRun(folder_ / "run");
@@ -194,7 +194,7 @@ TEST_F(RunEvaluationTest, TracksFollowTheBendingPlate) {
 }
 
 TEST_F(RunEvaluationTest, PicksTheFirstOfEquallyGoodTrackFrames) {
-  options_.track_frame = -1;
+  options_.tracks.references.clear();
   EXPECT_EQ(Evaluate().tracks->errors.reference_frame, 0);
 }
 
@@ -213,7 +213,7 @@ TEST_F(RunEvaluationTest, SaysWhatIsSkipped) {
 }
 
 TEST_F(RunEvaluationTest, TracksOfAFrameBeyondTheTruthAreSkipped) {
-  options_.track_frame = 50;
+  options_.tracks.references = {50};
   EXPECT_THAT(Evaluate().skipped,
               Contains("track error: frame 50 is not in the run"));
 }
@@ -277,7 +277,7 @@ TEST(EvaluationOptions, RejectsNonsense) {
   options.depth_every = -1;
   EXPECT_THROW(options.Check(), InputError);
   options = {};
-  options.track_frames = 0;
+  options.tracks.frames = 0;
   EXPECT_THROW(options.Check(), InputError);
   options = {};
   options.surface.samples = 0;
