@@ -117,6 +117,19 @@ TEST_F(DepthAgreementTest, FramesInWhichASurfaceWasNotTrackedDoNotCount) {
   EXPECT_GT(surfaces[1].distances.median, 0.25);
 }
 
+TEST_F(DepthAgreementTest, SurfaceInPlainViewThatWasNotTrackedIsUncovered) {
+  plain_view_pixels_ = 1000;
+  const auto lost_but_once = [](RecordedRun* run) {
+    for (FrameMotions& frame : run->surfaces[1].motions.frames) {
+      frame.tracked = frame.frame == 5;
+    }
+  };
+  const auto surfaces = Compare(lost_but_once, 5);
+  EXPECT_EQ(surfaces[1].frames, 1);
+  EXPECT_EQ(surfaces[1].frames_missing, 2);
+  EXPECT_NEAR(surfaces[1].UncoveredFraction(), 2. / 3, 0.02);
+}
+
 TEST_F(DepthAgreementTest, DepthOutOfTheRangeOfTheRunDoesNotCount) {
   folder_.Write("run/options.flags",
                 "--max_depth=1.2\n--sequence=" + (folder_ / "sequence") + "\n");
