@@ -136,11 +136,9 @@ bool SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   last_states_[report.id] = report.state;
   const bool refound = report.state == "tracked" && IsAway(before);
   if (refound) surface.refound.push_back(frame);
-  if (report.state != "lost" && report.state != "hidden") {
-    surface.away_since = -1;
-  } else if (surface.away_since < 0) {
-    surface.away_since = frame;
-  }
+  const bool gone = report.state == "lost" || report.state == "hidden";
+  if (gone && surface.away_since < 0) surface.away_since = frame;
+  if (report.state == "tracked") surface.away_since = -1;
   if (report.nodes > 0) {
     surface.nodes = report.nodes;
     surface.node_spacing = report.node_spacing;

@@ -28,8 +28,8 @@ struct SurfaceSummary {
   /// Frames in which it was tracked again after it had been lost, hidden or out
   /// of view.
   std::vector<int> refound;
-  /// Since which frame it is lost or hidden, at the end of the run; -1 = it is
-  /// not.
+  /// The frame in which it was lost or hidden and after which it was not
+  /// tracked again to the end of the run; -1 = it was.
   int away_since = -1;
 };
 

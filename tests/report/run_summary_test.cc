@@ -88,10 +88,11 @@ TEST(VerdictLine, SaysWhoWasNotFoundAgain) {
             "2 frames, 2 surfaces, none lost or occluded");
   EXPECT_EQ(VerdictLine(Through({"born", "lost", "tracked"})),
             "3 frames, 2 surfaces; 1 person lost in 1 frame, found again");
-  RunSummary summary = Through({"born", "tracked", "hidden", "lost", "hidden"});
+  RunSummary summary =
+      Through({"born", "tracked", "hidden", "lost", "hidden", "unseen"});
   EXPECT_EQ(summary.surfaces[1].away_since, 2);
   EXPECT_EQ(VerdictLine(summary),
-            "5 frames, 2 surfaces; 1 person lost in 1 frame, occluded in 2 "
+            "6 frames, 2 surfaces; 1 person lost in 1 frame, occluded in 2 "
             "frames, not found again since frame 2");
   summary.complete = false;
   EXPECT_EQ(VerdictLine(summary).rfind("incomplete: ", 0), 0u);
