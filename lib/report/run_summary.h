@@ -25,6 +25,12 @@ struct SurfaceSummary {
   int vertices = 0;         ///< Of the final mesh.
   std::vector<int> lost;    ///< Frames whose solve failed.
   std::vector<int> hidden;  ///< Frames in which others mostly hid it.
+  /// Frames in which it was tracked again after it had been lost, hidden or out
+  /// of view.
+  std::vector<int> refound;
+  /// The frame in which it was lost or hidden and after which it was not
+  /// tracked again to the end of the run; -1 = it was.
+  int away_since = -1;
 };
 
 /// What `summary.json` holds.
@@ -34,6 +40,8 @@ struct RunSummary {
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.
   int lost_frames = 0;        ///< Frames in which any surface was lost.
+  int occluded_frames = 0;    ///< Frames in which any surface was hidden.
+  int refound_frames = 0;     ///< Frames in which any surface was found again.
   double median_seconds = 0;  ///< Per frame, without writing.
   double mean_seconds = 0;    ///< Per frame, without writing.
   /// Mean seconds per frame of each part, in the order of kFrameParts.
@@ -42,6 +50,10 @@ struct RunSummary {
   std::int64_t peak_memory_bytes = 0;    ///< Largest resident size.
   std::vector<SurfaceSummary> surfaces;  ///< By id.
 };
+
+/// One line that says whether everything was followed: frames, surfaces, and
+/// those that were lost, occluded and found again or not.
+std::string VerdictLine(const RunSummary& summary);
 
 /// Text of `summary.json` as a value; keys in docs/report_format.md.
 nlohmann::ordered_json ToJson(const RunSummary& summary);
@@ -61,9 +73,13 @@ class SummaryBuilder {
   RunSummary Build() const;
 
  private:
-  void AddSurface(int frame, const SurfaceReport& report);
+  /// Returns whether the surface was found again.
+  bool AddSurface(int frame, const SurfaceReport& report);
 
   int lost_frames_ = 0;
+  int occluded_frames_ = 0;
+  int refound_frames_ = 0;
+  std::map<int, std::string> last_states_;  // By surface.
   std::vector<double> seconds_;
   std::array<double, kFrameParts.size()> part_sums_{};
   std::map<int, SurfaceSummary> surfaces_;
