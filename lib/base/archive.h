@@ -6,10 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <iomanip>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -215,6 +217,22 @@ void Serialize(Archive* archive, std::set<T>* values) {
 template <typename Archive, typename Key, typename T>
 void Serialize(Archive* archive, std::map<Key, T>* values) {
   archive_internal::SerializeTree<std::pair<Key, T>>(archive, values);
+}
+
+/// Writes a value that whoever reads has already, or checks it.
+///
+/// @throw InputError if it is another one: "<name> = <value>: expected <own>".
+template <typename Archive, typename T>
+void ExpectSame(Archive* archive, const std::string& name, const T& own) {
+  T value = own;
+  (*archive)(value);
+  if constexpr (Archive::kReads) {
+    if (value == own) return;
+    std::ostringstream text;
+    text << std::setprecision(17) << name << " = " << value << ": expected "
+         << own;
+    archive->Fail(text.str());
+  }
 }
 
 template <typename... T>

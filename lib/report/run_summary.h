@@ -25,6 +25,13 @@ struct SurfaceSummary {
   int vertices = 0;         ///< Of the final mesh.
   std::vector<int> lost;    ///< Frames whose solve failed.
   std::vector<int> hidden;  ///< Frames in which others mostly hid it.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(id, label, kind, first_frame, frames, nodes, node_spacing,
+               vertices, lost, hidden);
+  }
 };
 
 /// What `summary.json` holds.
@@ -59,6 +66,13 @@ class SummaryBuilder {
   /// Statistics of the frames so far; preset, versions, writing time and memory
   /// are left to the caller.
   RunSummary Build() const;
+
+  /// Saves or restores the statistics so far, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    archive->Section("summary");
+    (*archive)(lost_frames_, seconds_, part_sums_, surfaces_);
+  }
 
  private:
   void AddSurface(int frame, const SurfaceReport& report);
