@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "splitfusion/lib/base/archive.h"
 #include "support/sample_report.h"
 
 namespace splitfusion {
@@ -53,6 +55,26 @@ TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
   EXPECT_EQ(person.vertices, 400);
   EXPECT_EQ(person.lost, std::vector<int>{3});
   EXPECT_EQ(person.hidden, std::vector<int>{4});
+}
+
+TEST(SummaryBuilder, GoesOnFromItsState) {
+  SummaryBuilder whole, begun, resumed;
+  for (int frame = 0; frame < 6; ++frame) {
+    FrameReport report = SampleReport(frame);
+    report.total_seconds = 0.1 * frame;
+    if (frame % 2 == 1) report.surfaces[1].state = "lost";
+    if (frame == 4) report.surfaces[1].state = "hidden";
+    whole.Add(report);
+    (frame < 5 ? begun : resumed).Add(report);
+    if (frame != 4) continue;
+    std::stringstream stream;
+    ArchiveWriter writer(&stream);
+    writer(begun);
+    writer.Flush();
+    ArchiveReader reader(&stream, stream.str().size(), "state");
+    reader(resumed);
+  }
+  EXPECT_EQ(ToJson(resumed.Build()), ToJson(whole.Build()));
 }
 
 TEST(SummaryBuilder, ADroppedSurfaceBeginsAnew) {
