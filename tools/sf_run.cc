@@ -130,7 +130,8 @@ class Run {
   void OpenDirectory() {
     directory_.emplace(
         folder_.unfinished().root(),
-        RunFacts{FLAGS_preset, FlagfileText(), LibraryVersions()});
+        RunFacts{FLAGS_preset, FlagfileText(), LibraryVersions()},
+        folder_.start() == RunStart::kResumed);
   }
 
   /// Goes on from the checkpoint; false if that is of no use.

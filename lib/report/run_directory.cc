@@ -82,10 +82,14 @@ bool IsComplete(const RunPaths& paths) {
   return summary.is_object() && summary.value("complete", false);
 }
 
-RunDirectory::RunDirectory(const std::string& root, RunFacts facts)
+RunDirectory::RunDirectory(const std::string& root, RunFacts facts,
+                           bool goes_on)
     : paths_(root), facts_(std::move(facts)) {
   WriteText(paths_.Options(), OptionsText(facts_));
-  for (const auto& [path, stream] : Streams()) Open(path, stream);
+  for (const auto& [path, stream] : Streams()) {
+    if (!goes_on) fs::remove(path);
+    Open(path, stream);
+  }
   WriteHeads();
 }
 

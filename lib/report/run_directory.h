@@ -39,10 +39,11 @@ bool IsComplete(const RunPaths& paths);
 class RunDirectory {
  public:
   /// Writes options.flags and the heads of the streams into `root`, which is
-  /// made if it is missing.
+  /// made if it is missing. `goes_on`: streams that are there are kept, for
+  /// Serialize() to cut them.
   ///
   /// @throw InputError if a file cannot be written.
-  RunDirectory(const std::string& root, RunFacts facts);
+  RunDirectory(const std::string& root, RunFacts facts, bool goes_on = false);
 
   /// Saves or restores what was reported so far, see lib/base/archive.h. The
   /// streams are cut to what they held then.
