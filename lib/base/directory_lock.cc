@@ -14,12 +14,12 @@
 #include <iterator>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/random_id.h"
 
 namespace splitfusion {
 namespace {
@@ -232,17 +232,6 @@ std::optional<LockHolder> LivingHolder(const std::string& path,
   const std::string text = ReadAll(path);
   if (text.empty() || IsStale(path, text, options)) return std::nullopt;
   return Parse(text);
-}
-
-std::string RandomId() {
-  std::random_device device;
-  std::string id;
-  for (int i = 0; i < 4; ++i) {
-    char digits[9];
-    std::snprintf(digits, sizeof(digits), "%08x", device());
-    id += digits;
-  }
-  return id;
 }
 
 }  // namespace splitfusion

@@ -67,9 +67,6 @@ class DirectoryLock {
 std::optional<LockHolder> LivingHolder(const std::string& path,
                                        const LockOptions& options = {});
 
-/// 32 random hexadecimal digits.
-std::string RandomId();
-
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_BASE_DIRECTORY_LOCK_H_

@@ -14,6 +14,12 @@ struct FrameMotions {
   bool tracked = true;  ///< False if the motion was carried over (lost frame or
                         ///< surface out of view).
   std::vector<NodeMotion> motions;  ///< Per node of the final graph.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(frame, tracked, motions);
+  }
 };
 
 /// Motions of one surface through time, by ascending frame. Nodes born later
@@ -25,6 +31,12 @@ struct MotionHistory {
 
   /// Motions of a frame; null if the surface has none for it.
   const FrameMotions* Find(int frame) const;
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(frames);
+  }
 };
 
 /// Writes `motions.bin`, little endian: 8 bytes "SFMOTN02" (the last two are

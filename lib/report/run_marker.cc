@@ -47,14 +47,16 @@ Json ToJson(const RunMarker& marker) {
           {"identity", marker.identity.Hash()},
           {"identity_parts", marker.identity.parts},
           {"outputs", marker.identity.outputs},
+          {"phase", static_cast<int>(marker.phase)},
           {"files", files}};
 }
 
 /// A path that stays within the folder.
 std::string CheckedPath(const std::string& path) {
   const fs::path parts(path);
-  const bool leaves = path.empty() || parts.is_absolute() ||
-                      std::find(parts.begin(), parts.end(), "..") != parts.end();
+  const bool leaves =
+      path.empty() || parts.is_absolute() ||
+      std::find(parts.begin(), parts.end(), "..") != parts.end();
   if (leaves) {
     throw InputError("path '" + path + "': expected one within the folder");
   }
@@ -72,6 +74,11 @@ RunMarker FromJson(const Json& json) {
   marker.resumed_at = json.at("resumed_at").get<std::vector<int>>();
   marker.identity.parts = json.at("identity_parts").get<NamedValues>();
   marker.identity.outputs = json.at("outputs").get<NamedValues>();
+  const int phase = json.value("phase", 0);
+  if (phase < 0 || phase > static_cast<int>(PublishingPhase::kMoving)) {
+    throw InputError("phase " + std::to_string(phase) + ": expected 0..2");
+  }
+  marker.phase = static_cast<PublishingPhase>(phase);
   for (const Json& file : json.at("files")) {
     marker.files[CheckedPath(file.at("path").get<std::string>())] = {
         file.at("bytes").get<std::uint64_t>(),
@@ -98,6 +105,12 @@ std::string ToString(RunStatus status) {
       break;
   }
   return "failed";
+}
+
+OwnedFileList RunMarker::Owned() const {
+  OwnedFileList owned;
+  for (const auto& [path, file] : files) owned.push_back({path, file.bytes});
+  return owned;
 }
 
 bool RunMarker::IsSame(const RunIdentity& other) const {
@@ -128,14 +141,15 @@ void WriteRunMarker(const std::string& folder, const RunMarker& marker) {
 std::map<std::string, RunFile> ListRunFiles(
     const std::string& folder, const std::vector<std::string>& left_out) {
   std::map<std::string, RunFile> files;
-  const std::string marker = fs::path(RunPaths(folder).Marker()).filename();
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    const std::string path = fs::relative(entry.path(), folder).string();
-    const bool out = path == marker || std::find(left_out.begin(),
-                                                 left_out.end(),
-                                                 path) != left_out.end();
-    if (!out) files[path] = Describe(entry.path().string());
+  const std::string marker =
+      fs::path(RunPaths(folder).Marker()).filename().string();
+  for (const OwnedFile& file : FilesBelow(folder)) {
+    const bool out = file.path == marker ||
+                     std::find(left_out.begin(), left_out.end(), file.path) !=
+                         left_out.end();
+    if (!out) {
+      files[file.path] = Describe((fs::path(folder) / file.path).string());
+    }
   }
   return files;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/report/run_identity.h"
 
 namespace splitfusion {
@@ -28,6 +29,13 @@ struct RunFile {
   std::string xxh3;         ///< HashOfFile().
 };
 
+/// Where a run is on its way from RUN/unfinished to its place.
+enum class PublishingPhase {
+  kNone,      ///< Not on its way.
+  kRemoving,  ///< Files of an older result are being deleted.
+  kMoving,    ///< They are gone; its own are being renamed.
+};
+
 /// Content of RUN/run.json: by this file a folder is known to be a run, and
 /// what in it is the run's. Format: docs/report_format.md.
 struct RunMarker {
@@ -39,6 +47,10 @@ struct RunMarker {
   /// What the run wrote, by path relative to it; once it has ended.
   std::map<std::string, RunFile> files;
 
+  PublishingPhase phase = PublishingPhase::kNone;  ///< Of putting in place.
+
+  /// The same as a list of what may be deleted.
+  OwnedFileList Owned() const;
   /// Whether the run has the same result and the same outputs.
   bool IsSame(const RunIdentity& other) const;
 };

@@ -31,11 +31,21 @@ struct SurfaceSummary {
   /// The frame in which it was lost or hidden and after which it was not
   /// tracked again to the end of the run; -1 = it was.
   int away_since = -1;
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(id, label, kind, first_frame, frames, nodes, node_spacing,
+               vertices, lost, hidden, refound, away_since);
+  }
 };
 
 /// What `summary.json` holds.
 struct RunSummary {
   bool complete = true;  ///< False if the run ended before the sequence did.
+  std::string status = "complete";  ///< ToString(RunStatus).
+  std::string error;                ///< Of a failed run, one line.
+  std::vector<int> resumed_at;      ///< Frames from which the run went on.
   std::string preset;    ///< Name of the preset.
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.
@@ -71,6 +81,14 @@ class SummaryBuilder {
   /// Statistics of the frames so far; preset, versions, writing time and memory
   /// are left to the caller.
   RunSummary Build() const;
+
+  /// Saves or restores the statistics so far, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    archive->Section("summary");
+    (*archive)(lost_frames_, occluded_frames_, refound_frames_, last_states_,
+               seconds_, part_sums_, surfaces_);
+  }
 
  private:
   /// Returns whether the surface was found again.

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "splitfusion/lib/base/archive.h"
 #include "support/sample_report.h"
 
 namespace splitfusion {
@@ -97,6 +99,26 @@ TEST(VerdictLine, SaysWhoWasNotFoundAgain) {
   summary.complete = false;
   EXPECT_EQ(VerdictLine(summary).rfind("incomplete: ", 0), 0u);
   EXPECT_EQ(ToJson(summary)["verdict"], VerdictLine(summary));
+}
+
+TEST(SummaryBuilder, GoesOnFromItsState) {
+  SummaryBuilder whole, begun, resumed;
+  for (int frame = 0; frame < 6; ++frame) {
+    FrameReport report = SampleReport(frame);
+    report.total_seconds = 0.1 * frame;
+    if (frame % 2 == 1) report.surfaces[1].state = "lost";
+    if (frame == 4) report.surfaces[1].state = "hidden";
+    whole.Add(report);
+    (frame < 5 ? begun : resumed).Add(report);
+    if (frame != 4) continue;
+    std::stringstream stream;
+    ArchiveWriter writer(&stream);
+    writer(begun);
+    writer.Flush();
+    ArchiveReader reader(&stream, stream.str().size(), "state");
+    reader(resumed);
+  }
+  EXPECT_EQ(ToJson(resumed.Build()), ToJson(whole.Build()));
 }
 
 TEST(SummaryBuilder, ADroppedSurfaceBeginsAnew) {
