@@ -35,7 +35,7 @@ DEFINE_bool(overwrite, false, "Replace an earlier run in --output.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,
-            "Warped meshes hold what was seen only later or is lost, too.");
+            "Warped meshes hold what was seen only later, too.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
 DECLARE_string(masks);
 DECLARE_double(max_depth);

@@ -21,6 +21,10 @@ bool IsPlain(char c) {
 
 RunPaths::RunPaths(std::string root) : root_(std::move(root)) {}
 
+std::string RunPaths::Marker() const { return Below("run.json"); }
+std::string RunPaths::Lock() const { return Below("lock"); }
+std::string RunPaths::Unfinished() const { return Below("unfinished"); }
+std::string RunPaths::Checkpoint() const { return Below("checkpoint.bin"); }
 std::string RunPaths::Options() const { return Below("options.flags"); }
 std::string RunPaths::Calibration() const { return Below("calibration.txt"); }
 std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }

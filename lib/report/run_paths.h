@@ -14,6 +14,10 @@ class RunPaths {
 
   /// The run directory itself.
   const std::string& root() const { return root_; }
+  std::string Marker() const;       ///< RUN/run.json
+  std::string Lock() const;         ///< RUN/lock
+  std::string Unfinished() const;   ///< RUN/unfinished, of a run that goes on
+  std::string Checkpoint() const;   ///< RUN/checkpoint.bin
   std::string Options() const;      ///< RUN/options.flags
   std::string Calibration() const;  ///< RUN/calibration.txt
   std::string Trajectory() const;   ///< RUN/trajectory.txt
