@@ -34,6 +34,12 @@ TEST(RunPaths, NamesSurfacesAndFrames) {
   EXPECT_EQ(RunPaths::SurfaceName(1, "../a"), "001_.._a");
 }
 
+TEST(RunPaths, LongAndOddLabelsGiveNamesThatFileSystemsTake) {
+  const std::string label(300, 'a');
+  EXPECT_EQ(RunPaths::SurfaceName(12, label), "012_" + std::string(60, 'a'));
+  EXPECT_EQ(RunPaths::SurfaceName(1, std::string("\xff\0\n", 3)), "001____");
+}
+
 TEST(RunDirectory, HoldsEveryFrameBeforeTheEnd) {
   const TemporaryFolder folder;
   RunDirectory run(folder / "run", Facts());
