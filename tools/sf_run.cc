@@ -28,6 +28,7 @@
 #include "splitfusion/lib/base/read_ahead.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/blas_threads.h"
+#include "splitfusion/lib/report/disk_space.h"
 #include "splitfusion/lib/report/frame_pictures.h"
 #include "splitfusion/lib/report/library_versions.h"
 #include "splitfusion/lib/report/run_directory.h"
@@ -216,6 +217,7 @@ class Run {
     FrameReport report = work_->fusion.ProcessFrame(std::move(*prepared));
     // Less than the sum of its parts: reading overlaps with the frame before.
     report.total_seconds = frame_time.Seconds();
+    folder_.CheckHeld();
     directory_->AddFrame(report, work_->fusion.trajectory().back());
     WarnOfMissingDepth(frame);
     WarnOfLostSurfaces(report);
@@ -224,7 +226,6 @@ class Run {
     WritePictures(frame, report.frame);
     directory_->AddWritingSeconds(writing.Seconds());
     ++done_;
-    folder_.CheckHeld();
     if (done_ < work_->reader.size() &&
         schedule_.IsDue(since_checkpoint_.Seconds())) {
       SaveCheckpoint();
@@ -285,6 +286,7 @@ class Run {
   }
 
   void WriteResults(RunStatus status, const std::string& error = "") {
+    folder_.CheckHeld();
     const Stopwatch writing;
     work_->fusion.Finish();
     for (const auto& [id, surface] : work_->fusion.surfaces()) {
@@ -328,6 +330,15 @@ class Run {
   std::optional<ReadAhead<PreparedFrame>> frames_;
 };
 
+/// A full disk is better found before the first frame than after the last.
+void CheckDisk(const TumReader& reader, const RunFolder& folder) {
+  if (folder.start() != RunStart::kFresh) return;
+  const PinholeCamera& camera = reader.camera();
+  CheckDiskSpace(folder.unfinished().root(),
+                 EstimatedBytes({std::int64_t{camera.width} * camera.height,
+                                 reader.size(), FLAGS_pictures_every}));
+}
+
 void CheckOutputFlags() {
   CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
   CheckOption(FLAGS_warped_every >= 0, "warped_every", FLAGS_warped_every,
@@ -362,6 +373,7 @@ int RunSequence() {
               << "and this input; nothing to do\n";
     return kExitDone;
   }
+  CheckDisk(work->reader, folder);
   CatchInterruption();
   Run(std::move(work), make, &folder).Execute();
   return kExitDone;
