@@ -3,7 +3,9 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -65,6 +67,7 @@ DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
 DECLARE_int32(first_frame);
 DECLARE_double(max_depth);
 DECLARE_double(min_depth);
+DECLARE_string(masks);
 DECLARE_string(preset);
 DECLARE_string(sequence);
 
@@ -73,6 +76,18 @@ namespace {
 
 /// Of checkpoint.bin: another one with every change of what it holds.
 constexpr std::uint32_t kCheckpointVersion = SplitFusion::kStateVersion;
+
+/// Refuses to replace what the run is to read from.
+void CheckNotInOutput(const std::string& flag, const std::string& input) {
+  namespace fs = std::filesystem;
+  if (!FLAGS_overwrite || input.empty() || !fs::exists(input)) return;
+  const fs::path output = fs::weakly_canonical(FLAGS_output);
+  const fs::path path = fs::weakly_canonical(input);
+  const auto end =
+      std::mismatch(output.begin(), output.end(), path.begin(), path.end());
+  CheckOption(end.first != output.end(), flag, input,
+              "a folder outside of --output, which is overwritten");
+}
 
 /// The run directory as the flags ask for it.
 RunFolder OpenRunFolder(const RunIdentity& identity) {
@@ -380,6 +395,9 @@ void CheckOutputFlags() {
               FLAGS_checkpoint_every, "a number of frames, 0 or -1");
   CheckOption(!FLAGS_keep_checkpoints || FLAGS_checkpoint_every > 0,
               "keep_checkpoints", "true", "--checkpoint_every above 0");
+  CheckNotInOutput("sequence", FLAGS_sequence);
+  CheckNotInOutput("masks", FLAGS_masks);
+  CheckNotInOutput("from", FLAGS_from);
   CheckOption(!FLAGS_keep_same || FLAGS_overwrite, "keep_same", "true",
               "--overwrite beside it");
 }

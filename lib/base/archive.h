@@ -138,6 +138,7 @@ void VisitElements(Archive* archive, cv::Mat* mat) {
 
 // What Visit() finds for the types of others.
 
+/// Truth values, a byte each.
 template <typename Archive>
 void Serialize(Archive* archive, bool* value) {
   std::uint8_t byte = *value ? 1 : 0;
@@ -145,6 +146,7 @@ void Serialize(Archive* archive, bool* value) {
   if constexpr (Archive::kReads) *value = byte != 0;
 }
 
+/// Texts with their length.
 template <typename Archive>
 void Serialize(Archive* archive, std::string* text) {
   const std::uint64_t size = archive->Count(text->size(), 1);
@@ -152,12 +154,14 @@ void Serialize(Archive* archive, std::string* text) {
   archive->Raw(text->data(), size);
 }
 
+/// Transforms of Eigen.
 template <typename Archive, typename T, int Dim, int Mode, int Options>
 void Serialize(Archive* archive,
                Eigen::Transform<T, Dim, Mode, Options>* transform) {
   (*archive)(transform->matrix());
 }
 
+/// Matrices of OpenCV with type and sizes.
 template <typename Archive, typename Mat>
 std::enable_if_t<std::is_base_of_v<cv::Mat, Mat>> Serialize(Archive* archive,
                                                             Mat* mat) {
@@ -172,11 +176,13 @@ std::enable_if_t<std::is_base_of_v<cv::Mat, Mat>> Serialize(Archive* archive,
   archive_internal::VisitElements(archive, &elements);
 }
 
+/// Pairs.
 template <typename Archive, typename A, typename B>
 void Serialize(Archive* archive, std::pair<A, B>* pair) {
   (*archive)(pair->first, pair->second);
 }
 
+/// Optionals.
 template <typename Archive, typename T>
 void Serialize(Archive* archive, std::optional<T>* value) {
   bool has_value = value->has_value();
@@ -188,6 +194,7 @@ void Serialize(Archive* archive, std::optional<T>* value) {
   if (has_value) (*archive)(**value);
 }
 
+/// Vectors.
 template <typename Archive, typename T>
 void Serialize(Archive* archive, std::vector<T>* values) {
   if constexpr (archive_internal::IsPlain<T>::value) {
@@ -199,21 +206,25 @@ void Serialize(Archive* archive, std::vector<T>* values) {
   }
 }
 
+/// Deques.
 template <typename Archive, typename T>
 void Serialize(Archive* archive, std::deque<T>* values) {
   archive_internal::SerializeList(archive, values);
 }
 
+/// Arrays.
 template <typename Archive, typename T, std::size_t N>
 void Serialize(Archive* archive, std::array<T, N>* values) {
   for (T& value : *values) (*archive)(value);
 }
 
+/// Sets.
 template <typename Archive, typename T>
 void Serialize(Archive* archive, std::set<T>* values) {
   archive_internal::SerializeTree<T>(archive, values);
 }
 
+/// Maps.
 template <typename Archive, typename Key, typename T>
 void Serialize(Archive* archive, std::map<Key, T>* values) {
   archive_internal::SerializeTree<std::pair<Key, T>>(archive, values);
