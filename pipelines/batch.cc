@@ -43,9 +43,8 @@ bool Reconstruct(const BatchOptions& options, const StopRequest& stop,
   const BatchRun& run = result->run;
   const RunPaths paths(run.folder);
   result->skipped = !options.overwrite && IsComplete(paths);
-  if (result->skipped) return true;
-  ClearRun(paths);
-  std::vector<std::string> arguments = {options.run_program};
+  std::vector<std::string> arguments = {options.run_program, "--overwrite"};
+  if (!options.overwrite) arguments.push_back("--keep_same");
   if (!run.option_file.empty()) {
     arguments.push_back("--flagfile=" + run.option_file);
   }

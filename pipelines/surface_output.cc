@@ -1,5 +1,6 @@
 #include "splitfusion/pipelines/surface_output.h"
 
+#include "splitfusion/lib/deformation/graph_file.h"
 #include "splitfusion/lib/deformation/known_triangles.h"
 
 namespace splitfusion {

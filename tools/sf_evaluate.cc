@@ -19,6 +19,8 @@
 #include "splitfusion/lib/evaluation/run_evaluation.h"
 #include "splitfusion/lib/evaluation/track_point.h"
 #include "splitfusion/lib/report/run_directory.h"
+#include "splitfusion/lib/report/run_marker.h"
+#include "splitfusion/lib/report/run_paths.h"
 #include "tool_main.h"
 
 DEFINE_string(run, "", "Directory of a run of sf_run.");
@@ -148,7 +150,21 @@ void FollowQueries(const RecordedRun& run,
             << (followed.by_mask ? "; surfaces by mask" : "") << '\n';
 }
 
+/// What is read of a run must be as the run wrote it.
+void CheckRunFiles() {
+  const std::optional<RunMarker> marker = ReadRunMarker(FLAGS_run);
+  if (!marker) return;  // Of an older version, or made by hand.
+  for (const auto& [path, file] : marker->files) {
+    const std::string first = std::filesystem::path(path).begin()->string();
+    const bool is_read = first == "surfaces" || path == "trajectory.txt" ||
+                         path == "frames.jsonl" || path == "options.flags" ||
+                         path == "calibration.txt";
+    if (is_read) CheckRunFile(*marker, FLAGS_run, path);
+  }
+}
+
 void EvaluateRunDirectory(const EvaluationOptions& options) {
+  CheckRunFiles();
   RecordedRun run = ReadRun(FLAGS_run);
   if (!IsComplete(RunPaths(FLAGS_run))) {
     std::cout << FLAGS_run << ": unfinished run (summary.json is missing or "
@@ -169,7 +185,8 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
   evaluation.whole_model = FLAGS_whole_model;
   evaluation.with_unknown = WithUnknown();
   Publish(FormatTable(evaluation), ToJson(evaluation),
-          (std::filesystem::path(FLAGS_run) / "evaluation.json").string());
+          RunPaths(FLAGS_run).Evaluation());
+  if (FLAGS_output.empty()) AddRunFile(FLAGS_run, "evaluation.json");
 }
 
 /// @throw InputError unless the flags are those of one of the uses.

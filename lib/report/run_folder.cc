@@ -70,6 +70,16 @@ void MoveFiles(const OwnedFileList& files, const fs::path& from,
   }
 }
 
+/// What a killed program was writing: lib/base/atomic_file names it so.
+void RemoveTemporaries(const std::string& folder) {
+  for (const OwnedFile& file : FilesBelow(folder)) {
+    const std::string name = fs::path(file.path).filename().string();
+    const bool temporary =
+        name.front() == '.' && name.find(".tmp") != std::string::npos;
+    if (temporary) fs::remove(fs::path(folder) / file.path);
+  }
+}
+
 /// Empty folders that are left when the files have been moved.
 void RemoveEmptyFolders(const std::string& folder) {
   std::vector<fs::path> folders;
@@ -130,7 +140,7 @@ void RunFolder::Decide(const RunFolderOptions& options) {
   const bool can_resume = options.resume && begun && begun->IsSame(identity_);
   const bool finished = published &&
                         published->status == RunStatus::kComplete &&
-                        published->IsSame(identity_) && !can_resume;
+                        published->IsSame(identity_);
   if (finished && (!options.overwrite || options.keep_same)) {
     marker_ = *published;
     start_ = RunStart::kFinished;
@@ -196,6 +206,7 @@ void RunFolder::Resume(RunMarker begun) {
     RemoveOwnedFiles(root_, published->Owned());  // Their folders.
     fs::remove(paths_.Marker());
   }
+  RemoveTemporaries(unfinished_.root());
   marker_ = std::move(begun);
   marker_.status = RunStatus::kRunning;
   marker_.error.clear();

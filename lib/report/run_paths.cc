@@ -13,6 +13,9 @@ std::string Digits(int value, std::size_t width) {
   return digits;
 }
 
+/// File systems take 255 bytes; the id at the beginning keeps names apart.
+constexpr std::size_t kMaxSurfaceName = 64;
+
 bool IsPlain(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.';
 }
@@ -63,7 +66,7 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
   for (char& c : name) {
     if (!IsPlain(c)) c = '_';
   }
-  return name;
+  return name.substr(0, kMaxSurfaceName);
 }
 
 std::string RunPaths::FrameName(int frame) { return Digits(frame, 6); }

@@ -35,7 +35,8 @@ class RunPaths {
   /// RUN/masks/STEM.png, 16-bit surface ids; `stem` of the depth file.
   std::string Mask(const std::string& stem) const;
   /// RUN/surfaces/NNN_LABEL; characters of the label other than letters,
-  /// digits, hyphens and dots become underscores.
+  /// digits, hyphens and dots become underscores, and the name ends after 64
+  /// characters.
   std::string Surface(int id, const std::string& label) const;
   /// RUN/surfaces/NNN_LABEL/warped/FRAME.ply
   std::string WarpedMesh(int id, const std::string& label, int frame) const;

@@ -90,6 +90,9 @@ Json ToJson(const RunSummary& summary) {
   Json surfaces = Json::array();
   for (const auto& item : summary.surfaces) surfaces.push_back(ToJson(item));
   return {{"complete", summary.complete},
+          {"status", summary.status},
+          {"error", summary.error},
+          {"resumed_at", summary.resumed_at},
           {"preset", summary.preset},
           {"frames", summary.frames},
           {"verdict", VerdictLine(summary)},

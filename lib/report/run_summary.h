@@ -43,6 +43,9 @@ struct SurfaceSummary {
 /// What `summary.json` holds.
 struct RunSummary {
   bool complete = true;  ///< False if the run ended before the sequence did.
+  std::string status = "complete";  ///< ToString(RunStatus).
+  std::string error;                ///< Of a failed run, one line.
+  std::vector<int> resumed_at;      ///< Frames from which the run went on.
   std::string preset;    ///< Name of the preset.
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.
