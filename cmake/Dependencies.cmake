@@ -31,7 +31,8 @@ function(splitfusion_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC Eigen3::Eigen Ceres::ceres opencv_core opencv_imgproc
            opencv_imgcodecs TBB::tbb nlohmann_json::nlohmann_json
-    PRIVATE opencv_dnn OpenVDB::openvdb pcl_kdtree cholmod)
+    PRIVATE opencv_dnn OpenVDB::openvdb pcl_kdtree cholmod
+            SQLite::SQLite3)
   target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS}
                              ${CHOLMOD_INCLUDE_DIR})
 endfunction()

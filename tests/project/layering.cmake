@@ -11,7 +11,7 @@ set(level_1 geometry)
 set(level_2 sequence segmentation deformation tsdf)
 set(level_3 split render association energy)
 set(level_4 evaluation report cost_functions synthetic)
-set(level_5 pipelines)
+set(level_5 pipelines experiment)
 set(level_6 tools examples)
 
 # Within one level.
