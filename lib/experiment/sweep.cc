@@ -12,6 +12,7 @@
 #include <optional>
 #include <thread>
 
+#include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 
