@@ -14,6 +14,10 @@ message(STATUS "Libraries: Ceres ${Ceres_VERSION}, Eigen ${Eigen3_VERSION}, "
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 
+# Nor has xxHash, which tells files apart and finds damaged ones.
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+find_library(XXHASH_LIBRARY xxhash REQUIRED)
+
 if(SPLITFUSION_BUILD_TOOLS)
   find_package(gflags REQUIRED)
   find_package(glog REQUIRED)
@@ -32,7 +36,7 @@ function(splitfusion_link_dependencies target)
     PUBLIC Eigen3::Eigen Ceres::ceres opencv_core opencv_imgproc
            opencv_imgcodecs TBB::tbb nlohmann_json::nlohmann_json
     PRIVATE opencv_dnn OpenVDB::openvdb pcl_kdtree cholmod
-            SQLite::SQLite3)
+            SQLite::SQLite3 ${XXHASH_LIBRARY})
   target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS}
-                             ${CHOLMOD_INCLUDE_DIR})
+                             ${CHOLMOD_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR})
 endfunction()

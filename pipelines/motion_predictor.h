@@ -33,6 +33,12 @@ class MotionPredictor {
   /// Predicted motion over the next frame, world from world.
   const Rigid3d& velocity() const { return velocity_; }
 
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(known_, frames_since_, begun_, velocity_, steps_);
+  }
+
  private:
   Rigid3d MotionOf(const Rigid3d& world_from_canonical,
                    const Eigen::Vector3d& center, Placement placement);

@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_PIPELINES_SPLIT_FUSION_H_
 #define SPLITFUSION_PIPELINES_SPLIT_FUSION_H_
 
+#include <cstdint>
 #include <memory>
 #include <set>
 #include <string>
@@ -61,6 +62,19 @@ class SplitFusion {
   /// Surface ids of the last frame, HxW.
   const LabelImage& labels() const { return live_.labels; }
 
+  /// Version of what Serialize() writes: another one with every change of it.
+  static constexpr std::uint32_t kStateVersion = 1;
+
+  /// Saves or restores everything that later frames and results depend on, see
+  /// lib/base/archive.h: one made with the same arguments goes on as this one
+  /// would have done, byte for byte. Between two frames, before Finish();
+  /// Prepare() may run meanwhile. A SplitFusion whose restoring failed is of no
+  /// use any more.
+  ///
+  /// @throw InputError if what is read does not fit camera or voxels.
+  template <typename Archive>
+  void Serialize(Archive* archive);
+
  private:
   void PredictMotions();
   void Split(const PreparedFrame& prepared, FrameReport* report);
@@ -86,6 +100,11 @@ class SplitFusion {
   void Drop(int id, const std::string& state, SurfaceReport* report);
   void AddNewSurfaces(const Frame& frame, FrameReport* report);
   void Record(const Frame& frame, FrameReport* report);
+  template <typename Archive>
+  void SerializeSurfaces(Archive* archive);
+  const SurfaceOptions& OptionsOf(int id) const {
+    return id == 0 ? options_.background : options_.object;
+  }
   Rigid3d WorldFromCamera() const;
 
   PinholeCamera camera_;

@@ -119,6 +119,13 @@ class Surface {
   /// Motions of all frames so far.
   const MotionHistory& history() const { return history_; }
 
+  /// Saves or restores all that later frames depend on, see
+  /// lib/base/archive.h; of a surface made with the same arguments but for the
+  /// label. What can be made from the rest bit for bit is left out: skinning,
+  /// and the meshes of the volume's blocks.
+  template <typename Archive>
+  void Serialize(Archive* archive);
+
  private:
   void PlaceGraph(const LiveView& live);
   void FuseWarped(const LiveView& live, DepthObservation* observation);
@@ -133,6 +140,8 @@ class Surface {
   /// Notes the same in DeformationGraph::sightings, where weights of one point
   /// are enough; new nodes are taken for seen since first_seen.
   void UpdateSightings();
+  /// Makes what Serialize() leaves out.
+  void RestoreCaches();
 
   int id_;
   std::string label_;

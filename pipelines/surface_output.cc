@@ -1,12 +1,13 @@
 #include "splitfusion/pipelines/surface_output.h"
 
+#include "splitfusion/lib/deformation/graph_file.h"
 #include "splitfusion/lib/deformation/known_triangles.h"
 
 namespace splitfusion {
 namespace {
 
 /// The final mesh under the motions of one frame, camera frame; `whole`: with
-/// what was seen only later or is not known.
+/// what was seen only later.
 TriangleMesh WarpMesh(const Surface& surface, const FrameMotions& motions,
                       bool whole) {
   DeformationGraph graph = surface.graph();
@@ -19,8 +20,8 @@ TriangleMesh WarpMesh(const Surface& surface, const FrameMotions& motions,
     mesh.normals[i] = warp.WarpNormal(skinning, mesh.normals[i]);
   }
   if (!whole) {
-    mesh.triangles = KnownTriangles(surface.mesh(), surface.mesh_skinning(),
-                                    surface.graph(), motions.frame);
+    mesh.triangles = SeenTriangles(surface.mesh(), surface.mesh_skinning(),
+                                   surface.graph(), motions.frame);
   }
   return mesh;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -246,21 +247,28 @@ PipelineOptions PipelineOptionsFromFlags() {
   return options;
 }
 
+bool IsRunFlag(const gflags::CommandLineFlagInfo& flag) {
+  const std::string file =
+      std::filesystem::path(flag.filename).filename().string();
+  for (const char* own :
+       {"sf_run.cc", "run_flags.cc", "mask_flags.cc", "network_flags.cc",
+        "sequence_flags.cc", "identity_flags.cc"}) {
+    if (file == own) return true;
+  }
+  return false;
+}
+
 std::string FlagfileText() {
+  // Where a run goes and what may be replaced is not a part of what it does:
+  // --flagfile=RUN/options.flags --output=NEW repeats it.
+  const std::set<std::string> left_out = {
+      "output", "overwrite", "keep_same", "resume", "print_identity", "set"};
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
   std::string text;
   for (const gflags::CommandLineFlagInfo& flag : flags) {
-    const std::string file =
-        std::filesystem::path(flag.filename).filename().string();
-    // Where a run goes is not a part of what it does:
-    // --flagfile=RUN/options.flags
-    // --output=NEW repeats it.
-    if (flag.name == "output" || flag.name == "overwrite") continue;
-    const bool ours = file == "sf_run.cc" || file == "run_flags.cc" ||
-                      file == "mask_flags.cc" || file == "network_flags.cc" ||
-                      file == "sequence_flags.cc";
-    if (ours) text += "--" + flag.name + "=" + flag.current_value + "\n";
+    if (!IsRunFlag(flag) || left_out.count(flag.name) > 0) continue;
+    text += "--" + flag.name + "=" + flag.current_value + "\n";
   }
   return text;
 }

@@ -7,8 +7,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/evaluation_json.h"
@@ -17,6 +19,8 @@
 #include "splitfusion/lib/evaluation/run_evaluation.h"
 #include "splitfusion/lib/evaluation/track_point.h"
 #include "splitfusion/lib/report/run_directory.h"
+#include "splitfusion/lib/report/run_marker.h"
+#include "splitfusion/lib/report/run_paths.h"
 #include "tool_main.h"
 
 DEFINE_string(run, "", "Directory of a run of sf_run.");
@@ -41,17 +45,24 @@ DEFINE_int32(depth_every, 10,
 DEFINE_bool(whole_model, false,
             "In every frame the whole final model, with what the camera saw "
             "of it only later.");
-DEFINE_bool(with_unknown, false,
+DEFINE_bool(with_unknown, true,
             "In every frame all that had been seen by then, with parts of "
-            "which nobody knows where they are.");
+            "which nobody knows where they are; the default.");
+DEFINE_bool(known_only, false,
+            "In every frame only what is known of it: seen lately, or firmly "
+            "held by what was.");
 DEFINE_string(track_query, "",
               "CSV id,frame,x,y,z (camera frame, m): points of one frame to "
               "follow through --run.");
 DEFINE_string(track_output, "", "CSV for the followed points.");
 DEFINE_int32(track_frames, 30, "Frames through which points are followed.");
-DEFINE_int32(track_frame, -1,
-             "Frame in which the true track points are given; -1 = the one in "
-             "which most are visible.");
+DEFINE_string(track_frame, "-1",
+              "Frames in which the true track points are given, as 30,46,60; "
+              "-1 = the one in which most are visible.");
+DEFINE_int32(presence_every, 1,
+             "Presence and shape of the models in every n-th frame; 0 = not.");
+DEFINE_int32(plain_view_pixels, 8000,
+             "Somebody with more live pixels is in plain view.");
 
 namespace splitfusion {
 namespace {
@@ -63,6 +74,27 @@ constexpr char kUsage[] =
     "  sf_evaluate --trajectory=FILE --ground_truth=FILE\n"
     "  sf_evaluate --mesh=PLY --ground_truth_mesh=PLY\n";
 
+/// The frames of --track_frame; none for -1.
+std::vector<int> TrackFrames() {
+  std::vector<int> frames;
+  if (FLAGS_track_frame == "-1") return frames;
+  std::istringstream words(FLAGS_track_frame + ",");
+  for (std::string word; std::getline(words, word, ',');) {
+    const bool digits =
+        !word.empty() && word.size() < 9 &&
+        word.find_first_not_of("0123456789") == std::string::npos;
+    CheckOption(digits, "track_frame", FLAGS_track_frame,
+                "frame indices with commas between them, or -1");
+    frames.push_back(std::stoi(word));
+  }
+  return frames;
+}
+
+/// Whether the model holds what KnownNodes() would leave out.
+bool WithUnknown() {
+  return FLAGS_whole_model || (FLAGS_with_unknown && !FLAGS_known_only);
+}
+
 EvaluationOptions OptionsFromFlags() {
   EvaluationOptions options;
   options.trajectory.max_time_difference = FLAGS_max_time_difference;
@@ -70,8 +102,10 @@ EvaluationOptions OptionsFromFlags() {
   options.surface.max_distance = FLAGS_max_distance;
   options.surface.min_seen = FLAGS_min_seen;
   if (FLAGS_label >= 0) options.surface.label = FLAGS_label;
-  options.track_frame = FLAGS_track_frame;
-  options.track_frames = FLAGS_track_frames;
+  options.tracks.references = TrackFrames();
+  options.tracks.frames = FLAGS_track_frames;
+  options.presence_every = FLAGS_presence_every;
+  options.presence.plain_view_pixels = FLAGS_plain_view_pixels;
   options.depth_every = FLAGS_depth_every;
   options.Check();
   return options;
@@ -109,14 +143,28 @@ void FollowQueries(const RecordedRun& run,
                    const EvaluationOptions& options) {
   const FollowedPoints followed =
       FollowPoints(run, surfaces, ReadTrackPoints(FLAGS_track_query),
-                   options.track_frames, options.attachment);
+                   options.tracks.frames, options.tracks.attachment);
   WriteTrackPoints(FLAGS_track_output, followed.points);
   std::cout << FLAGS_track_output << ": " << followed.attached << " points, "
             << followed.unattached << " that no surface is near to"
             << (followed.by_mask ? "; surfaces by mask" : "") << '\n';
 }
 
+/// What is read of a run must be as the run wrote it.
+void CheckRunFiles() {
+  const std::optional<RunMarker> marker = ReadRunMarker(FLAGS_run);
+  if (!marker) return;  // Of an older version, or made by hand.
+  for (const auto& [path, file] : marker->files) {
+    const std::string first = std::filesystem::path(path).begin()->string();
+    const bool is_read = first == "surfaces" || path == "trajectory.txt" ||
+                         path == "frames.jsonl" || path == "options.flags" ||
+                         path == "calibration.txt";
+    if (is_read) CheckRunFile(*marker, FLAGS_run, path);
+  }
+}
+
 void EvaluateRunDirectory(const EvaluationOptions& options) {
+  CheckRunFiles();
   RecordedRun run = ReadRun(FLAGS_run);
   if (!IsComplete(RunPaths(FLAGS_run))) {
     std::cout << FLAGS_run << ": unfinished run (summary.json is missing or "
@@ -124,7 +172,7 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
   }
   for (RecordedSurface& surface : run.surfaces) {
     if (FLAGS_whole_model) surface.graph.first_seen.clear();
-    if (FLAGS_with_unknown) surface.graph.sightings.clear();
+    if (WithUnknown()) surface.graph.sightings.clear();
   }
   const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
   std::optional<GroundTruth> truth;
@@ -135,9 +183,10 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
   }
   RunEvaluation evaluation = EvaluateRun(run, surfaces, truth, options);
   evaluation.whole_model = FLAGS_whole_model;
-  evaluation.with_unknown = FLAGS_with_unknown || FLAGS_whole_model;
+  evaluation.with_unknown = WithUnknown();
   Publish(FormatTable(evaluation), ToJson(evaluation),
-          (std::filesystem::path(FLAGS_run) / "evaluation.json").string());
+          RunPaths(FLAGS_run).Evaluation());
+  if (FLAGS_output.empty()) AddRunFile(FLAGS_run, "evaluation.json");
 }
 
 /// @throw InputError unless the flags are those of one of the uses.
@@ -152,8 +201,7 @@ void CheckUsage() {
   require(given(FLAGS_track_query) == given(FLAGS_track_output),
           "--track_query and --track_output go together");
   require(!FLAGS_whole_model || given(FLAGS_run), "--whole_model needs --run");
-  require(!FLAGS_with_unknown || given(FLAGS_run),
-          "--with_unknown needs --run");
+  require(!FLAGS_known_only || given(FLAGS_run), "--known_only needs --run");
   require(!given(FLAGS_track_query) || given(FLAGS_run),
           "--track_query needs --run");
   require(!given(FLAGS_trajectory) || given(FLAGS_ground_truth),

@@ -1,8 +1,10 @@
 // Writes a synthetic RGB-D sequence with exact ground truth.
 
 #include <gflags/gflags.h>
+#include <glog/logging.h>
 
 #include <string>
+#include <vector>
 
 #include "progress_line.h"
 #include "splitfusion/lib/base/error.h"
@@ -11,7 +13,7 @@
 #include "tool_main.h"
 
 DEFINE_string(output, "", "Folder to write; it must be new or empty.");
-DEFINE_bool(overwrite, false, "Replace a sequence that is there.");
+DEFINE_bool(overwrite, false, "Replace a sequence of sf_synth that is there.");
 DEFINE_string(scene, "room_person",
               "room_person (room, walking person, soft toy), room, person, "
               "soft_object (alone, nothing around).");
@@ -66,11 +68,16 @@ int Run() {
   writer_options.mesh_every = FLAGS_mesh_every;
   writer_options.overwrite = FLAGS_overwrite;
   const Stopwatch stopwatch;
-  WriteSyntheticSequence(
+  const std::vector<std::string> kept = WriteSyntheticSequence(
       OptionsFromFlags(), writer_options, FLAGS_output, [&](int done) {
         ShowProgress(done, FLAGS_frames, "frames",
                      stopwatch.Seconds() / done * (FLAGS_frames - done));
       });
+  if (!kept.empty()) {
+    LOG(WARNING) << FLAGS_output << ": " << kept.size()
+                 << " files that sf_synth did not write stay there, such as "
+                 << kept.front();
+  }
   return kExitDone;
 }
 

@@ -6,15 +6,16 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <sstream>
 #include <vector>
 
 #include "flag_names.h"
+#include "flagfile_check.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/freed_memory.h"
+#include "standard_streams.h"
 
 DECLARE_bool(help);
 DECLARE_bool(helpshort);
@@ -127,42 +128,6 @@ void CheckNoArguments(int argc, char** argv) {
   }
 }
 
-/// gflags passes over flags of a flagfile that it does not know.
-/// @throw InputError on the first of these.
-void CheckFlagfile(const std::string& path) {
-  std::ifstream file(path);
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    const std::size_t begin = line.find_first_not_of(" \t");
-    if (begin == std::string::npos || line[begin] != '-') continue;
-    const std::size_t name_begin = line.find_first_not_of('-', begin);
-    if (name_begin == std::string::npos) continue;
-    std::string name = line.substr(
-        name_begin, line.find_first_of("= \t\r", name_begin) - name_begin);
-    std::string value;
-    if (gflags::GetCommandLineOption(name.c_str(), &value)) continue;
-    if (name.rfind("no", 0) == 0 &&
-        gflags::GetCommandLineOption(name.c_str() + 2, &value)) {
-      continue;
-    }
-    throw InputError(path + ", line " + std::to_string(number) +
-                     ": unknown flag '" + name + "', see --help");
-  }
-}
-
-/// @throw InputError if a flagfile of the command line names an unknown flag.
-void CheckFlagfiles(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument(argv[i]);
-    const std::size_t begin = argument.find_first_not_of('-');
-    if (begin == 0 || begin == std::string::npos) continue;
-    const std::string flag = argument.substr(begin);
-    if (flag.rfind("flagfile=", 0) == 0) CheckFlagfile(flag.substr(9));
-    if (flag == "flagfile" && i + 1 < argc) CheckFlagfile(argv[i + 1]);
-  }
-}
-
 /// False if the program was only asked for help.
 bool ParseFlags(int argc, char** argv, const std::string& name,
                 const std::string& usage) {
@@ -185,6 +150,7 @@ bool ParseFlags(int argc, char** argv, const std::string& name,
 
 int ToolMain(int argc, char** argv, const std::string& usage,
              const std::function<int()>& body) {
+  SecureStandardStreams();
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   KeepFreedMemory();
   FLAGS_logtostderr = true;

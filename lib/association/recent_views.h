@@ -35,12 +35,23 @@ class RecentViews {
   std::optional<Sighting> Look(int frame, int surface,
                                const Eigen::Vector3d& point) const;
 
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(views_);
+  }
+
  private:
   struct View {
     int frame = 0;
     PinholeCamera camera;
     cv::Mat_<float> depth;
     cv::Mat_<std::uint16_t> labels;
+
+    template <typename Archive>
+    void Serialize(Archive* archive) {
+      (*archive)(frame, camera, depth, labels);
+    }
   };
 
   static Sighting LookAround(const View& view, int surface,

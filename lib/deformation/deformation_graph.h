@@ -13,12 +13,24 @@ namespace splitfusion {
 struct NodeMotion {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< R_i
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< t_i
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(rotation, translation);
+  }
 };
 
 /// Frames from the first to the last one, both included.
 struct FrameRun {
   int first = 0;  ///< Index of the first frame.
   int last = 0;   ///< Index of the last frame.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(first, last);
+  }
 };
 
 /// The embedded deformation graph of one surface (SplitFusion IV-B).
@@ -54,6 +66,13 @@ struct DeformationGraph {
   int size() const { return static_cast<int>(positions.size()); }
   /// Whether one motion carries the whole surface.
   bool rigid() const { return positions.size() == 1; }
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(positions, motions, neighbors, node_spacing, first_seen,
+               sightings, seen, seen_edges);
+  }
 };
 
 /// The one-node graph of a rigid surface.

@@ -82,12 +82,18 @@ Eigen::VectorXd StepsOut(const std::vector<int>& walkers,
 
 }  // namespace
 
-std::vector<char> KnownNodes(const DeformationGraph& graph, int frame) {
-  std::vector<char> known(graph.size(), true);
-  if (graph.first_seen.size() < known.size()) return known;
+std::vector<char> SeenNodes(const DeformationGraph& graph, int frame) {
+  std::vector<char> seen(graph.size(), true);
+  if (graph.first_seen.size() < seen.size()) return seen;
   for (int i = 0; i < graph.size(); ++i) {
-    known[i] = graph.first_seen[i] <= frame;
+    seen[i] = graph.first_seen[i] <= frame;
   }
+  return seen;
+}
+
+std::vector<char> KnownNodes(const DeformationGraph& graph, int frame) {
+  std::vector<char> known = SeenNodes(graph, frame);
+  if (graph.first_seen.size() < known.size()) return known;
   if (graph.sightings.size() < known.size()) return known;
   const std::vector<char> lately = SeenLately(graph, frame);
   std::vector<int> hidden;

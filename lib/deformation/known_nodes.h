@@ -13,6 +13,11 @@ constexpr int kLatelyFrames = 8;
 /// Up to this length of its walk, metres, a node is firmly held by others.
 constexpr double kFirmWalk = 0.4;
 
+/// For every node, whether it had been seen by a frame
+/// (DeformationGraph::first_seen); all nodes where that is not recorded of all
+/// of them.
+std::vector<char> SeenNodes(const DeformationGraph& graph, int frame);
+
 /// For every node, whether it is known that in a frame it was where its motion
 /// puts it: it had been seen by then (DeformationGraph::first_seen), and either
 /// lately (DeformationGraph::sightings), or it is firmly held by nodes that

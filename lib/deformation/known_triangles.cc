@@ -26,12 +26,9 @@ bool IsKnown(const Eigen::Vector3f& point, const Skinning& skinning,
   return false;
 }
 
-}  // namespace
-
-std::vector<Eigen::Vector3i> KnownTriangles(
-    const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
-    const DeformationGraph& graph, int frame) {
-  const std::vector<char> known_nodes = KnownNodes(graph, frame);
+std::vector<Eigen::Vector3i> TrianglesNear(
+    const std::vector<char>& known_nodes, const TriangleMesh& mesh,
+    const std::vector<Skinning>& skinning, const DeformationGraph& graph) {
   if (std::all_of(known_nodes.begin(), known_nodes.end(),
                   [](char known) { return known; })) {
     return mesh.triangles;
@@ -46,6 +43,20 @@ std::vector<Eigen::Vector3i> KnownTriangles(
                  return known[t[0]] && known[t[1]] && known[t[2]];
                });
   return triangles;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3i> KnownTriangles(
+    const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
+    const DeformationGraph& graph, int frame) {
+  return TrianglesNear(KnownNodes(graph, frame), mesh, skinning, graph);
+}
+
+std::vector<Eigen::Vector3i> SeenTriangles(
+    const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
+    const DeformationGraph& graph, int frame) {
+  return TrianglesNear(SeenNodes(graph, frame), mesh, skinning, graph);
 }
 
 }  // namespace splitfusion

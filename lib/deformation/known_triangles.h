@@ -28,6 +28,12 @@ std::vector<Eigen::Vector3i> KnownTriangles(
     const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
     const DeformationGraph& graph, int frame);
 
+/// The part of a surface's final mesh that had been seen by a frame: the same
+/// near nodes that had been (SeenNodes), wherever they are by now.
+std::vector<Eigen::Vector3i> SeenTriangles(
+    const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
+    const DeformationGraph& graph, int frame);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_DEFORMATION_KNOWN_TRIANGLES_H_

@@ -6,19 +6,23 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
 
 #include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-using Magic = std::array<char, 8>;
-constexpr Magic kMagic = {'S', 'F', 'M', 'O', 'T', 'N', '0', '1'};
+/// Eight bytes at the beginning; the last two are the version.
+constexpr char kMagic[] = "SFMOTN02";
+/// Version without a checksum at the end.
+constexpr char kFirstMagic[] = "SFMOTN01";
+constexpr std::size_t kMagicBytes = 8;
 /// R row by row, then t.
 using StoredMotion = std::array<float, 12>;
 
@@ -46,166 +50,126 @@ NodeMotion Restore(const StoredMotion& stored) {
 }
 
 template <typename T>
-void Write(const T& value, std::ostream& out) {
-  out.write(reinterpret_cast<const char*>(&value), sizeof(T));
+void Append(const T& value, std::string* bytes) {
+  bytes->append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
-template <typename T>
-T Read(std::istream& stream) {
-  T value{};
-  stream.read(reinterpret_cast<char*>(&value), sizeof(T));
-  return value;
+/// Takes values off the content of a file, one after the other.
+class ByteReader {
+ public:
+  ByteReader(const std::string& bytes, std::size_t begin)
+      : next_(bytes.data() + begin) {}
+
+  template <typename T>
+  T Read() {
+    T value;
+    std::memcpy(&value, next_, sizeof(T));
+    next_ += sizeof(T);
+    return value;
+  }
+
+ private:
+  const char* next_;
+};
+
+std::string BytesOf(const MotionHistory& history) {
+  const std::size_t nodes =
+      history.frames.empty() ? 0 : history.frames.front().motions.size();
+  std::string bytes(kMagic, kMagicBytes);
+  Append(static_cast<std::uint32_t>(history.frames.size()), &bytes);
+  Append(static_cast<std::uint32_t>(nodes), &bytes);
+  for (const FrameMotions& frame : history.frames) {
+    assert(frame.motions.size() == nodes);
+    Append(static_cast<std::int32_t>(frame.frame), &bytes);
+    Append(static_cast<std::int32_t>(frame.tracked ? 1 : 0), &bytes);
+    for (const NodeMotion& motion : frame.motions) {
+      Append(Store(motion), &bytes);
+    }
+  }
+  Append(Checksum64(bytes.data(), bytes.size()), &bytes);
+  return bytes;
 }
 
-std::uintmax_t FileSize(std::istream& stream) {
-  stream.seekg(0, std::ios::end);
-  const auto size = static_cast<std::uintmax_t>(stream.tellg());
+/// Bytes of a file of motions; a file that cannot be one is not read.
+///
+/// @throw InputError if the size is not the one that its head states.
+std::string ReadMotionBytes(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  std::string head(kMagicBytes + 8, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  const bool is_first = head.compare(0, kMagicBytes, kFirstMagic) == 0;
+  if (!is_first && head.compare(0, kMagicBytes, kMagic) != 0) {
+    throw InputError(path + ": expected a file that begins with '" + kMagic +
+                     "' or '" + kFirstMagic + "'");
+  }
+  ByteReader reader(head, kMagicBytes);
+  const auto frames = reader.Read<std::uint32_t>();
+  const auto nodes = reader.Read<std::uint32_t>();
+  const std::uintmax_t expected =
+      head.size() + std::uintmax_t{frames} * (8 + std::uintmax_t{nodes} * 48) +
+      (is_first ? 0 : sizeof(std::uint64_t));
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || size != expected) {
+    throw InputError(path + ": " + std::to_string(size) + " bytes: expected " +
+                     std::to_string(expected) + " for " +
+                     std::to_string(frames) + " frames of " +
+                     std::to_string(nodes) + " nodes");
+  }
+  std::string bytes(expected, '\0');
   stream.seekg(0);
-  return size;
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!stream) throw InputError(path + ": cannot be read to its end");
+  return bytes;
 }
 
-FrameMotions ReadFrame(std::istream& stream, std::uint32_t nodes) {
+/// @throw InputError unless the last eight bytes are the checksum of all before
+///     them, or there is none.
+void CheckSum(const std::string& path, const std::string& bytes) {
+  if (bytes.compare(0, kMagicBytes, kFirstMagic) == 0) return;
+  const std::size_t end = bytes.size() - sizeof(std::uint64_t);
+  if (ByteReader(bytes, end).Read<std::uint64_t>() ==
+      Checksum64(bytes.data(), end)) {
+    return;
+  }
+  throw InputError(path +
+                   ": is damaged: its checksum does not fit its content");
+}
+
+/// Whether a motion can be one: finite, and its matrix a rotation as far as
+/// floats keep it.
+bool IsRigid(const NodeMotion& motion) {
+  constexpr double kTolerance = 1e-3;
+  const Eigen::Matrix3d& r = motion.rotation;
+  return motion.translation.allFinite() && r.allFinite() &&
+         (r.transpose() * r).isIdentity(kTolerance) && r.determinant() > 0;
+}
+
+void CheckFrame(const std::string& path, const FrameMotions& frame,
+                const MotionHistory& before) {
+  const std::string place = path + ": frame " + std::to_string(frame.frame);
+  if (frame.frame < 0 ||
+      (!before.frames.empty() && before.frames.back().frame >= frame.frame)) {
+    throw InputError(place + ": expected frames in ascending order, from 0");
+  }
+  for (std::size_t i = 0; i < frame.motions.size(); ++i) {
+    if (IsRigid(frame.motions[i])) continue;
+    throw InputError(place + ", node " + std::to_string(i) +
+                     ": its motion is no rotation and translation: the file "
+                     "is damaged");
+  }
+}
+
+FrameMotions ReadFrame(std::uint32_t nodes, ByteReader* reader) {
   FrameMotions frame;
-  frame.frame = Read<std::int32_t>(stream);
-  frame.tracked = Read<std::int32_t>(stream) != 0;
+  frame.frame = reader->Read<std::int32_t>();
+  frame.tracked = reader->Read<std::int32_t>() != 0;
   frame.motions.reserve(nodes);
   for (std::uint32_t i = 0; i < nodes; ++i) {
-    frame.motions.push_back(Restore(Read<StoredMotion>(stream)));
+    frame.motions.push_back(Restore(reader->Read<StoredMotion>()));
   }
   return frame;
-}
-
-std::vector<Eigen::Vector3d> Positions(const std::string& path,
-                                       const Json& json) {
-  std::vector<Eigen::Vector3d> positions;
-  for (const Json& item : json) {
-    const auto p = item.get<std::array<double, 3>>();
-    positions.emplace_back(p[0], p[1], p[2]);
-    if (!positions.back().cast<float>().allFinite()) {
-      throw InputError(path + ": field 'positions': " + item.dump() +
-                       ": expected metres");
-    }
-  }
-  return positions;
-}
-
-void CheckEdges(const std::string& path, const DeformationGraph& graph) {
-  if (graph.neighbors.size() != graph.positions.size()) {
-    throw InputError(path + ": 'edges' has " +
-                     std::to_string(graph.neighbors.size()) +
-                     " entries: expected one a node, " +
-                     std::to_string(graph.positions.size()));
-  }
-  for (const std::vector<int>& neighbors : graph.neighbors) {
-    for (const int j : neighbors) {
-      if (j >= 0 && j < graph.size()) continue;
-      throw InputError(path + ": 'edges' names node " + std::to_string(j) +
-                       ": expected 0.." + std::to_string(graph.size() - 1));
-    }
-  }
-}
-
-void CheckArray(const std::string& path, const std::string& field,
-                const Json& json) {
-  if (json.is_array()) return;
-  throw InputError(path + ": field '" + field + "': " + json.dump() +
-                   ": expected an array");
-}
-
-/// A field that has an entry for every node or none at all.
-void CheckEntries(const std::string& path, const std::string& field,
-                  const Json& json, std::size_t nodes) {
-  CheckArray(path, field, json);
-  if (json.size() == nodes || json.empty()) return;
-  throw InputError(
-      path + ": '" + field + "' has " + std::to_string(json.size()) +
-      " entries: expected one a node, " + std::to_string(nodes) + ", or none");
-}
-
-std::vector<int> Frames(const std::string& path, const std::string& field,
-                        const Json& json) {
-  std::vector<int> frames;
-  for (const Json& item : json) {
-    const bool is_frame =
-        item.is_number_unsigned() && item.get<std::uint64_t>() <= INT32_MAX;
-    if (!is_frame) {
-      throw InputError(path + ": field '" + field + "': " + item.dump() +
-                       ": expected a frame index");
-    }
-    frames.push_back(item.get<int>());
-  }
-  return frames;
-}
-
-std::vector<int> FirstSeen(const std::string& path, const Json& json,
-                           std::size_t nodes) {
-  CheckEntries(path, "first_seen", json, nodes);
-  return Frames(path, "first_seen", json);
-}
-
-/// Runs of frames of one node: [first, last, first, last, ...].
-std::vector<FrameRun> Runs(const std::string& path, const Json& json) {
-  CheckArray(path, "sightings", json);
-  const std::vector<int> ends = Frames(path, "sightings", json);
-  bool ascending = !ends.empty() && ends.size() % 2 == 0;
-  for (std::size_t i = 1; i < ends.size(); ++i) {
-    // A run may be one frame, but the next one begins later.
-    const bool next_run = i % 2 == 0;
-    ascending = ascending &&
-                (next_run ? ends[i - 1] < ends[i] : ends[i - 1] <= ends[i]);
-  }
-  if (!ascending) {
-    throw InputError(path + ": field 'sightings': " + json.dump() +
-                     ": expected first and last frames of runs, ascending");
-  }
-  std::vector<FrameRun> runs;
-  for (std::size_t i = 0; i < ends.size(); i += 2) {
-    runs.push_back({ends[i], ends[i + 1]});
-  }
-  return runs;
-}
-
-std::vector<std::vector<FrameRun>> Sightings(const std::string& path,
-                                             const Json& json,
-                                             std::size_t nodes) {
-  CheckEntries(path, "sightings", json, nodes);
-  std::vector<std::vector<FrameRun>> sightings;
-  for (const Json& item : json) sightings.push_back(Runs(path, item));
-  return sightings;
-}
-
-DeformationGraph ParseGraph(const std::string& path, const Json& json) {
-  DeformationGraph graph;
-  const char* field = "node_spacing";
-  try {
-    graph.node_spacing = json.at(field).get<double>();
-    graph.positions = Positions(path, json.at(field = "positions"));
-    graph.neighbors =
-        json.at(field = "edges").get<std::vector<std::vector<int>>>();
-  } catch (const Json::exception& error) {
-    throw InputError(path + ": field '" + field + "': " + error.what());
-  }
-  if (!std::isfinite(graph.node_spacing) || graph.node_spacing < 0) {
-    throw InputError(
-        path + ": field 'node_spacing': " + std::to_string(graph.node_spacing) +
-        ": expected metres >= 0");
-  }
-  graph.motions.resize(graph.positions.size());
-  CheckEdges(path, graph);
-  graph.first_seen = FirstSeen(path, json.value("first_seen", Json::array()),
-                               graph.positions.size());
-  graph.sightings = Sightings(path, json.value("sightings", Json::array()),
-                              graph.positions.size());
-  return graph;
-}
-
-int ParseNeighborsPerPoint(const std::string& path, const Json& json) {
-  const auto found = json.find("neighbors_per_point");
-  if (found == json.end() || !found->is_number_integer()) {
-    throw InputError(path +
-                     ": field 'neighbors_per_point': expected an integer");
-  }
-  return found->get<int>();
 }
 
 }  // namespace
@@ -218,82 +182,23 @@ const FrameMotions* MotionHistory::Find(int frame) const {
 }
 
 void WriteMotions(const std::string& path, const MotionHistory& history) {
-  const std::size_t nodes =
-      history.frames.empty() ? 0 : history.frames.front().motions.size();
-  WriteFileAtomically(path, [&](std::ostream& out) {
-    Write(kMagic, out);
-    Write(static_cast<std::uint32_t>(history.frames.size()), out);
-    Write(static_cast<std::uint32_t>(nodes), out);
-    for (const FrameMotions& frame : history.frames) {
-      assert(frame.motions.size() == nodes);
-      Write(static_cast<std::int32_t>(frame.frame), out);
-      Write(static_cast<std::int32_t>(frame.tracked ? 1 : 0), out);
-      for (const NodeMotion& motion : frame.motions) Write(Store(motion), out);
-    }
-  });
+  const std::string bytes = BytesOf(history);
+  WriteFileAtomically(path, [&](std::ostream& out) { out << bytes; });
 }
 
 MotionHistory ReadMotions(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path + ": cannot be opened");
-  const std::uintmax_t size = FileSize(stream);
-  if (Read<Magic>(stream) != kMagic) {
-    throw InputError(path + ": expected a file that begins with 'SFMOTN01'");
-  }
-  const auto frames = Read<std::uint32_t>(stream);
-  const auto nodes = Read<std::uint32_t>(stream);
-  const std::uintmax_t expected =
-      sizeof(kMagic) + 8 +
-      std::uintmax_t{frames} * (8 + std::uintmax_t{nodes} * 48);
-  if (!stream || size != expected) {
-    throw InputError(path + ": " + std::to_string(size) + " bytes: expected " +
-                     std::to_string(expected) + " for " +
-                     std::to_string(frames) + " frames of " +
-                     std::to_string(nodes) + " nodes");
-  }
+  const std::string bytes = ReadMotionBytes(path);
+  CheckSum(path, bytes);
+  ByteReader reader(bytes, kMagicBytes);
+  const auto frames = reader.Read<std::uint32_t>();
+  const auto nodes = reader.Read<std::uint32_t>();
   MotionHistory history;
   for (std::uint32_t i = 0; i < frames; ++i) {
-    history.frames.push_back(ReadFrame(stream, nodes));
+    FrameMotions frame = ReadFrame(nodes, &reader);
+    CheckFrame(path, frame, history);
+    history.frames.push_back(std::move(frame));
   }
   return history;
-}
-
-void WriteGraph(const std::string& path, const DeformationGraph& graph,
-                int neighbors_per_point) {
-  Json positions = Json::array();
-  for (const Eigen::Vector3d& g : graph.positions) {
-    positions.push_back({g.x(), g.y(), g.z()});
-  }
-  Json sightings = Json::array();
-  for (const std::vector<FrameRun>& runs : graph.sightings) {
-    sightings.push_back(Json::array());
-    for (const FrameRun& run : runs) {
-      sightings.back().push_back(run.first);
-      sightings.back().push_back(run.last);
-    }
-  }
-  const Json json = {{"node_spacing", graph.node_spacing},
-                     {"neighbors_per_point", neighbors_per_point},
-                     {"positions", positions},
-                     {"edges", graph.neighbors},
-                     {"first_seen", graph.first_seen},
-                     {"sightings", sightings}};
-  WriteFileAtomically(path, [&](std::ostream& out) { out << json << '\n'; });
-}
-
-DeformationGraph ReadGraph(const std::string& path, int* neighbors_per_point) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(path + ": cannot be opened");
-  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) {
-    throw InputError(path +
-                     ": expected a JSON object with node_spacing, "
-                     "neighbors_per_point, positions, edges");
-  }
-  if (neighbors_per_point != nullptr) {
-    *neighbors_per_point = ParseNeighborsPerPoint(path, json);
-  }
-  return ParseGraph(path, json);
 }
 
 }  // namespace splitfusion

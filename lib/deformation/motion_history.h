@@ -14,6 +14,12 @@ struct FrameMotions {
   bool tracked = true;  ///< False if the motion was carried over (lost frame or
                         ///< surface out of view).
   std::vector<NodeMotion> motions;  ///< Per node of the final graph.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(frame, tracked, motions);
+  }
 };
 
 /// Motions of one surface through time, by ascending frame. Nodes born later
@@ -25,34 +31,28 @@ struct MotionHistory {
 
   /// Motions of a frame; null if the surface has none for it.
   const FrameMotions* Find(int frame) const;
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(frames);
+  }
 };
 
-/// Writes `motions.bin`, little endian: 8 bytes "SFMOTN01", uint32 frames F,
-/// uint32 nodes N, then per frame int32 frame index, int32 tracked (0 or 1),
-/// and N x 12 float32 (R row by row, then t).
+/// Writes `motions.bin`, little endian: 8 bytes "SFMOTN02" (the last two are
+/// the version), uint32 frames F, uint32 nodes N, then per frame int32 frame
+/// index, int32 tracked (0 or 1), and N x 12 float32 (R row by row, then t);
+/// uint64 XXH3 of all bytes before it.
 ///
 /// @throw InputError if the file cannot be written.
 void WriteMotions(const std::string& path, const MotionHistory& history);
 
-/// Reads what WriteMotions wrote.
+/// Reads what WriteMotions wrote, and files of version 01, which have no
+/// checksum.
 ///
-/// @throw InputError on a missing, truncated or foreign file.
+/// @throw InputError on a missing, truncated, damaged or foreign file; also if
+///     frames do not ascend or a motion is not finite or no rotation.
 MotionHistory ReadMotions(const std::string& path);
-
-/// Writes `graph.json`: {"node_spacing", "neighbors_per_point", "positions":
-/// [[x, y, z], ...], "edges": [[j, ...], ...], "first_seen": [frame, ...],
-/// "sightings": [[first, last, first, last, ...], ...]}; positions canonical,
-/// metres; edges[i] are the neighbours of node i. Motions are in motions.bin.
-///
-/// @throw InputError if the file cannot be written.
-void WriteGraph(const std::string& path, const DeformationGraph& graph,
-                int neighbors_per_point);
-
-/// Reads what WriteGraph wrote; motions are identity. `neighbors_per_point`
-/// may be null. "first_seen" and "sightings" may be missing or empty.
-///
-/// @throw InputError on a missing or malformed file; names the field.
-DeformationGraph ReadGraph(const std::string& path, int* neighbors_per_point);
 
 }  // namespace splitfusion
 

@@ -1,6 +1,8 @@
 #include "splitfusion/lib/energy/term_registry.h"
 
+#include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -45,6 +47,13 @@ void SetKey(const std::string& key, const std::string& value,
     throw InputError("--terms: key '" + key + "' of term '" + options->name +
                      "': expected weight, loss or scale");
   }
+}
+
+/// The shortest text that is read back as the same number.
+std::string NumberText(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof(text), value);
+  return {text, end.ptr};
 }
 
 std::string Trimmed(const std::string& text) {
@@ -124,6 +133,56 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
                      Joined(registry.Names()));
   }
   return energy;
+}
+
+std::string EnergyText(const Energy& energy) {
+  std::string text;
+  for (const WeightedTerm& term : energy) {
+    const TermOptions& options = term.options;
+    text += (text.empty() ? "" : " ") + options.name +
+            "(weight=" + NumberText(options.weight) +
+            ",loss=" + ToString(options.loss) +
+            ",scale=" + NumberText(options.scale) + ")";
+  }
+  return text;
+}
+
+void SetTermOption(const std::string& key, const std::string& value,
+                   const TermRegistry& registry, Energy* energy) {
+  const std::size_t dot = key.find('.');
+  if (dot == std::string::npos) {
+    throw InputError("terms." + key +
+                     ": expected terms.NAME.weight, terms.NAME.loss or "
+                     "terms.NAME.scale");
+  }
+  const std::string name = key.substr(0, dot);
+  auto found = std::find_if(
+      energy->begin(), energy->end(),
+      [&](const WeightedTerm& term) { return term.options.name == name; });
+  if (found == energy->end()) {
+    WeightedTerm term;
+    term.options.name = name;
+    term.term = registry.Create(name);
+    energy->push_back(std::move(term));
+    found = energy->end() - 1;
+  }
+  SetKey(key.substr(dot + 1), value, &found->options);
+}
+
+std::map<std::string, std::string> TermOptionValues(const Energy& energy) {
+  std::map<std::string, std::string> values;
+  for (const WeightedTerm& term : energy) {
+    const TermOptions& options = term.options;
+    // The same term twice: the second one is "arap.2".
+    std::string name = options.name;
+    for (int i = 2; values.count(name + ".weight") > 0; ++i) {
+      name = options.name + "." + std::to_string(i);
+    }
+    values[name + ".weight"] = NumberText(options.weight);
+    values[name + ".loss"] = ToString(options.loss);
+    values[name + ".scale"] = NumberText(options.scale);
+  }
+  return values;
 }
 
 }  // namespace splitfusion

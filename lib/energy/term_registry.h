@@ -48,6 +48,19 @@ using Energy = std::vector<WeightedTerm>;
 ///     number or out of range, or a syntax error; says what is known.
 Energy ParseEnergy(const std::string& text, const TermRegistry& registry);
 
+/// Text that ParseEnergy() reads back, every option spelled out.
+std::string EnergyText(const Energy& energy);
+
+/// Sets one option of a term: `key` is NAME.weight, NAME.loss or NAME.scale. A
+/// term that the energy lacks is appended.
+///
+/// @throw InputError as ParseEnergy().
+void SetTermOption(const std::string& key, const std::string& value,
+                   const TermRegistry& registry, Energy* energy);
+
+/// Every option of every term: NAME.KEY -> value.
+std::map<std::string, std::string> TermOptionValues(const Energy& energy);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_ENERGY_TERM_REGISTRY_H_

@@ -40,6 +40,13 @@ std::vector<Eigen::Vector3f> AnimatedSurface::VerticesAt(int frame) const {
   return vertices;
 }
 
+TriangleMesh AnimatedSurface::MeshAt(int frame) const {
+  TriangleMesh mesh;
+  mesh.triangles = TrianglesAt(frame);
+  mesh.vertices = VerticesAt(frame);
+  return mesh;
+}
+
 std::vector<AnimatedSurface> AnimateSurfaces(
     std::vector<RecordedSurface> surfaces) {
   std::vector<AnimatedSurface> animated;

@@ -35,10 +35,14 @@ class AnimatedSurface {
   /// metres.
   std::vector<Eigen::Vector3f> VerticesAt(int frame) const;
 
-  /// Triangles of the mesh that are known in a frame (KnownTriangles).
+  /// Triangles of the mesh that are known in a frame (KnownTriangles), which
+  /// are all that had been seen by then if the graph has no sightings.
   std::vector<Eigen::Vector3i> TrianglesAt(int frame) const {
     return KnownTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
   }
+
+  /// Both of them, as warped/FRAME.ply has them; no normals, no colours.
+  TriangleMesh MeshAt(int frame) const;
 
   /// Skinning of a canonical point, metres.
   Skinning Skin(const Eigen::Vector3f& point) const {

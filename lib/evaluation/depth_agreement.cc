@@ -1,20 +1,15 @@
 #include "splitfusion/lib/evaluation/depth_agreement.h"
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
 
-#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/error_histogram.h"
+#include "splitfusion/lib/evaluation/live_images.h"
 #include "splitfusion/lib/evaluation/model_view.h"
-#include "splitfusion/lib/sequence/image_file.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
 
 namespace splitfusion {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Differences of one surface so far.
 struct Tally {
@@ -24,45 +19,6 @@ struct Tally {
 
 /// Tallies of surfaces by id.
 using Tallies = std::map<int, Tally>;
-
-void CheckSource(const RecordedRun& run) {
-  if (run.sequence.empty()) {
-    throw InputError(run.root + "/options.flags: no --sequence");
-  }
-  if (!fs::is_directory(run.sequence)) {
-    throw InputError(run.sequence +
-                     ": expected the folder of the sequence that "
-                     "options.flags names");
-  }
-  if (!run.camera) throw InputError(run.root + ": no camera intrinsics");
-}
-
-cv::Mat_<float> ReadLiveDepth(const RecordedRun& run,
-                              const RecordedFrame& frame) {
-  TumReaderOptions options = run.reading;
-  options.first_frame = frame.index;
-  options.max_frames = 1;
-  const Frame live = TumReader(run.sequence, options).Next().value();
-  if (live.stem != frame.stem) {
-    throw InputError(run.sequence + ": frame " + std::to_string(frame.index) +
-                     " is '" + live.stem + "': expected '" + frame.stem +
-                     "' as in frames.jsonl");
-  }
-  return live.depth;
-}
-
-cv::Mat_<std::uint16_t> ReadMask(const RecordedRun& run,
-                                 const RecordedFrame& frame,
-                                 const cv::Size& expected) {
-  const std::string path =
-      (fs::path(run.root) / "masks" / (frame.stem + ".png")).string();
-  const cv::Mat_<std::uint16_t> mask = ReadLabelImage(path);
-  if (mask.size() != expected) {
-    throw InputError(path + ": " + ToString(mask.size()) +
-                     " pixels: expected " + ToString(expected));
-  }
-  return mask;
-}
 
 /// Adds a live pixel of the tally's surface, at which the model shows the
 /// surface `shown` (-1 = nothing); both depths in metres.
@@ -77,29 +33,19 @@ void AddPixel(float live, float model, int shown, Tally* tally) {
   }
 }
 
-void AddFrame(const RecordedRun& run, const RecordedFrame& frame,
-              const std::vector<const AnimatedSurface*>& tracked,
-              Tallies* tallies) {
-  const cv::Mat_<float> live = ReadLiveDepth(run, frame);
-  const cv::Mat_<std::uint16_t> mask = ReadMask(run, frame, live.size());
-  const ModelView view = RenderModelView(tracked, frame.index, *run.camera);
-  // Of the surfaces that count in this frame.
-  std::map<int, Tally*> found;
-  for (const AnimatedSurface* surface : tracked) {
-    Tally& tally = tallies->at(surface->recorded().id);
-    ++tally.agreement.frames;
-    found[surface->recorded().id] = &tally;
-  }
+/// Pixels with depth of every surface of the mask.
+std::map<int, int> CountPixels(const cv::Mat_<float>& live,
+                               const cv::Mat_<std::uint16_t>& mask) {
+  std::map<int, int> counts;
   for (int v = 0; v < live.rows; ++v) {
     for (int u = 0; u < live.cols; ++u) {
-      if (!(live(v, u) > 0)) continue;
-      const auto tally = found.find(mask(v, u));
-      if (tally == found.end()) continue;
-      AddPixel(live(v, u), view.depth(v, u), view.surface(v, u), tally->second);
+      if (live(v, u) > 0) ++counts[mask(v, u)];
     }
   }
+  return counts;
 }
 
+/// The surfaces that were tracked in a frame.
 std::vector<const AnimatedSurface*> TrackedIn(
     int frame, const std::vector<AnimatedSurface>& surfaces) {
   std::vector<const AnimatedSurface*> tracked;
@@ -109,28 +55,87 @@ std::vector<const AnimatedSurface*> TrackedIn(
   return tracked;
 }
 
+/// Adds frames to the tallies.
+class Comparer {
+ public:
+  Comparer(const LiveImages& live, const std::vector<AnimatedSurface>& surfaces,
+           int plain_view_pixels)
+      : live_(live),
+        surfaces_(surfaces),
+        plain_view_pixels_(plain_view_pixels) {
+    for (const AnimatedSurface& surface : surfaces) {
+      const RecordedSurface& recorded = surface.recorded();
+      tallies_[recorded.id].agreement.surface_id = recorded.id;
+      tallies_[recorded.id].agreement.surface_label = recorded.label;
+    }
+  }
+
+  void Add(const RecordedFrame& frame) {
+    const auto tracked = TrackedIn(frame.index, surfaces_);
+    if (tracked.empty()) return;
+    const cv::Mat_<float> depth = live_.FilteredDepth(frame);
+    const cv::Mat_<std::uint16_t> mask = live_.Mask(frame);
+    const ModelView view =
+        RenderModelView(tracked, frame.index, live_.camera());
+    const auto counting = SurfacesThatCount(frame.index, depth, mask);
+    for (int v = 0; v < depth.rows; ++v) {
+      for (int u = 0; u < depth.cols; ++u) {
+        if (!(depth(v, u) > 0)) continue;
+        const auto tally = counting.find(mask(v, u));
+        if (tally == counting.end()) continue;
+        AddPixel(depth(v, u), view.depth(v, u), view.surface(v, u),
+                 tally->second);
+      }
+    }
+  }
+
+  std::vector<DepthAgreement> Result() const {
+    std::vector<DepthAgreement> result;
+    for (const auto& [id, tally] : tallies_) {
+      result.push_back(tally.agreement);
+      result.back().distances = tally.distances.Statistics();
+    }
+    return result;
+  }
+
+ private:
+  /// Those that were tracked, and those that were not although they are in
+  /// plain view: these are not rendered, and so uncovered.
+  std::map<int, Tally*> SurfacesThatCount(int frame,
+                                          const cv::Mat_<float>& depth,
+                                          const cv::Mat_<std::uint16_t>& mask) {
+    const std::map<int, int> pixels = CountPixels(depth, mask);
+    std::map<int, Tally*> counting;
+    for (const AnimatedSurface& surface : surfaces_) {
+      const int id = surface.recorded().id;
+      const bool tracked = surface.Tracked(frame);
+      const auto found = pixels.find(id);
+      const int count = found != pixels.end() ? found->second : 0;
+      if (!tracked && count <= plain_view_pixels_) continue;
+      Tally& tally = tallies_.at(id);
+      ++(tracked ? tally.agreement.frames : tally.agreement.frames_missing);
+      counting[id] = &tally;
+    }
+    return counting;
+  }
+
+  const LiveImages& live_;
+  const std::vector<AnimatedSurface>& surfaces_;
+  int plain_view_pixels_;
+  Tallies tallies_;
+};
+
 }  // namespace
 
 std::vector<DepthAgreement> CompareDepth(
     const RecordedRun& run, const std::vector<AnimatedSurface>& surfaces,
-    int every) {
-  CheckSource(run);
-  Tallies tallies;
-  for (const AnimatedSurface& surface : surfaces) {
-    const RecordedSurface& recorded = surface.recorded();
-    tallies[recorded.id].agreement.surface_id = recorded.id;
-    tallies[recorded.id].agreement.surface_label = recorded.label;
-  }
+    int every, int plain_view_pixels) {
+  const LiveImages live(run);
+  Comparer comparer(live, surfaces, plain_view_pixels);
   for (std::size_t i = 0; i < run.frames.size(); i += every) {
-    const auto tracked = TrackedIn(run.frames[i].index, surfaces);
-    if (!tracked.empty()) AddFrame(run, run.frames[i], tracked, &tallies);
+    comparer.Add(run.frames[i]);
   }
-  std::vector<DepthAgreement> result;
-  for (auto& [id, tally] : tallies) {
-    tally.agreement.distances = tally.distances.Statistics();
-    result.push_back(tally.agreement);
-  }
-  return result;
+  return comparer.Result();
 }
 
 }  // namespace splitfusion

@@ -16,6 +16,9 @@ struct DepthAgreement {
   int surface_id = 0;         ///< 0 is the background.
   std::string surface_label;  ///< Its label.
   int frames = 0;             ///< Frames looked at in which it was tracked.
+  /// Frames in which it was not tracked although it was in plain view; all its
+  /// pixels are uncovered there.
+  int frames_missing = 0;
   int pixels = 0;         ///< Live pixels with depth that are the surface's.
   int uncovered = 0;      ///< Those at which the model does not show it.
   int other_surface = 0;  ///< Of these, where it shows another one.
@@ -35,7 +38,9 @@ struct DepthAgreement {
 /// Rendered are the surfaces that were tracked in the frame (or born in it).
 /// The pixels of a surface are those that RUN/masks/STEM.png gives to it and
 /// that have depth after the filter that the run applied. One frame is read at
-/// a time.
+/// a time. A surface that was not tracked in a frame in which the mask gives
+/// more than `plain_view_pixels` of these to it is missing there: they are
+/// uncovered.
 ///
 /// `surfaces`: those of `run`.
 /// @return by surface; those that were tracked in no such frame have 0 frames.
@@ -43,7 +48,7 @@ struct DepthAgreement {
 ///     camera, or if an image of the sequence or a mask is missing or broken.
 std::vector<DepthAgreement> CompareDepth(
     const RecordedRun& run, const std::vector<AnimatedSurface>& surfaces,
-    int every);
+    int every, int plain_view_pixels);
 
 }  // namespace splitfusion
 

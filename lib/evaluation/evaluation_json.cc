@@ -4,12 +4,16 @@
 #include <nlohmann/json.hpp>
 
 #include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/evaluation/headline.h"
 #include "splitfusion/lib/evaluation/mean_error.h"
 
 namespace splitfusion {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Of kSurfaceThresholds, 20 mm: a pixel at which the model is right.
+constexpr std::size_t kRightThreshold = 1;
 
 Json StatisticsJson(const ErrorStatistics& errors) {
   return {{"count", errors.count}, {"rmse", errors.rmse},
@@ -41,13 +45,69 @@ Json PoseJson(const Rigid3d& pose) {
 Json ViewJson(const ViewError& view) {
   return {{"pixels", view.pixels},
           {"uncovered", view.uncovered},
+          {"missing", view.MissingShare()},
+          {"right", view.RightShare(kRightThreshold)},
           {"distances", DistancesJson(view.distances)}};
 }
 
 Json FrameJson(const InstanceFrameError& error) {
-  Json json = {{"frame", error.frame}};
+  Json json = {{"frame", error.frame}, {"missing", error.missing}};
   json["surface"] = error.matched ? ToJson(error.surface) : Json();
   json["view"] = error.view.pixels > 0 ? ViewJson(error.view) : Json();
+  return json;
+}
+
+Json PresenceJson(const InstancePresence& presence) {
+  return {{"surface_id",
+           presence.surface_id >= 0 ? Json(presence.surface_id) : Json()},
+          {"frames_in_view", presence.in_view.size()},
+          {"frames_missing", presence.missing.size()},
+          {"share", presence.MissingShare()},
+          {"missing_frames", presence.missing}};
+}
+
+Json SeenJson(const SeenScore& seen) {
+  Json frames = Json::array();
+  for (const SeenFrame& item : seen.frames) {
+    frames.push_back({{"frame", item.frame},
+                      {"precision", item.precision},
+                      {"recall", item.recall},
+                      {"f_score", item.f_score}});
+  }
+  const SeenFrame mean = seen.Mean();
+  return {{"surface_id", seen.surface_id >= 0 ? Json(seen.surface_id) : Json()},
+          {"precision", mean.precision},
+          {"recall", mean.recall},
+          {"f_score", mean.f_score},
+          {"by_frame", frames}};
+}
+
+/// NAME, NAME_worst, NAME_worst_frame.
+void AddShares(const std::string& name,
+               const std::optional<ShareOverFrames>& shares, Json* json) {
+  const bool known = shares && shares->worst_frame >= 0;
+  (*json)[name] = known ? Json(shares->mean) : Json();
+  (*json)[name + "_worst"] = known ? Json(shares->worst) : Json();
+  (*json)[name + "_worst_frame"] = known ? Json(shares->worst_frame) : Json();
+}
+
+void AddShape(const SurfaceShape& shape, Json* json) {
+  AddShares("stretched", shape.stretched, json);
+  (*json)["stretched_triangles"] = shape.stretched_triangles;
+  (*json)["longest_edge"] = shape.longest_edge;
+  AddShares("stray", shape.stray, json);
+}
+
+/// The figures of the surface of an instance: `surface` of its entry.
+Json InstanceSurfaceJson(const InstanceError& error,
+                         const InstanceMeans& means) {
+  if (means.surface_frames == 0 && !error.seen && !error.shape) return {};
+  Json json = ToJson(means.surface);
+  if (means.surface_frames == 0) {
+    for (Json& value : json) value = nullptr;
+  }
+  json["f_score_seen"] = error.seen ? Json(error.seen->Mean().f_score) : Json();
+  AddShape(error.shape.value_or(SurfaceShape()), &json);
   return json;
 }
 
@@ -57,13 +117,48 @@ Json InstanceJson(const InstanceError& error) {
     frames.push_back(FrameJson(item));
   }
   const InstanceMeans means = MeanOf(error);
-  Json json = {{"instance", error.instance}, {"name", error.name}};
+  Json json = {{"instance", error.instance},
+               {"name", error.name},
+               {"rigid", error.rigid}};
   json["surface_id"] = error.surface_id >= 0 ? Json(error.surface_id) : Json();
   json["surface_label"] = error.surface_label;
   json["surface_frames"] = means.surface_frames;
-  json["surface"] = means.surface_frames > 0 ? ToJson(means.surface) : Json();
+  json["surface_frames_missing"] = means.frames_missing;
+  json["presence"] = error.presence ? PresenceJson(*error.presence) : Json();
+  json["surface"] = InstanceSurfaceJson(error, means);
+  json["surface_where_shown"] = means.surface_frames > means.frames_missing
+                                    ? ToJson(means.shown)
+                                    : Json();
+  json["seen"] = error.seen ? SeenJson(*error.seen) : Json();
   json["view"] = means.view.pixels > 0 ? ViewJson(means.view) : Json();
   json["frames"] = frames;
+  return json;
+}
+
+Json ShapeJson(const SurfaceShape& shape) {
+  Json json = {{"surface_id", shape.surface_id},
+               {"surface_label", shape.surface_label},
+               {"frames", shape.frames}};
+  AddShape(shape, &json);
+  return json;
+}
+
+Json HeadlineJson(const Headline& headline) {
+  Json json;
+  for (const HeadlineFigure& figure : kHeadlineFigures) {
+    const std::optional<double>& value = headline.*figure.value;
+    json[figure.name] = value ? Json(*value) : Json();
+  }
+  return json;
+}
+
+Json BackgroundJson(const RunEvaluation& evaluation) {
+  if (!evaluation.background) return {};
+  Json json = ToJson(*evaluation.background);
+  json["ghosts"] =
+      evaluation.ghosts ? Json(evaluation.ghosts->Share()) : Json();
+  json["ghost_vertices"] =
+      evaluation.ghosts ? Json(evaluation.ghosts->far) : Json();
   return json;
 }
 
@@ -81,7 +176,8 @@ Json TracksJson(const TrackEvaluation& tracks) {
     item.update(TrackJson(error));
     instances.push_back(item);
   }
-  Json json = {{"reference_frame", tracks.errors.reference_frame},
+  const int reference = tracks.errors.reference_frame;
+  Json json = {{"reference_frame", reference >= 0 ? Json(reference) : Json()},
                {"frames", tracks.errors.frames},
                {"points", tracks.errors.points},
                {"attached", tracks.attached},
@@ -89,6 +185,18 @@ Json TracksJson(const TrackEvaluation& tracks) {
                {"by_mask", tracks.by_mask}};
   json.update(TrackJson(tracks.errors.all));
   json["instances"] = instances;
+  return json;
+}
+
+/// The mean over the reference frames, and each of them.
+Json AllTracksJson(const RunEvaluation& evaluation) {
+  if (!evaluation.tracks) return {};
+  Json json = TracksJson(*evaluation.tracks);
+  Json references = Json::array();
+  for (const TrackEvaluation& item : evaluation.track_references) {
+    references.push_back(TracksJson(item));
+  }
+  json["by_reference"] = references;
   return json;
 }
 
@@ -104,6 +212,7 @@ Json DepthJson(const DepthAgreement& agreement) {
   return {{"surface_id", agreement.surface_id},
           {"surface_label", agreement.surface_label},
           {"frames", agreement.frames},
+          {"frames_missing", agreement.frames_missing},
           {"pixels", agreement.pixels},
           {"uncovered", agreement.uncovered},
           {"other_surface", agreement.other_surface},
@@ -143,6 +252,10 @@ Json ToJson(const RunEvaluation& evaluation) {
   for (const InstanceError& item : evaluation.instances) {
     instances.push_back(InstanceJson(item));
   }
+  Json shapes = Json::array();
+  for (const SurfaceShape& item : evaluation.shapes) {
+    shapes.push_back(ShapeJson(item));
+  }
   Json depth = Json::array();
   for (const DepthAgreement& item : evaluation.depth) {
     depth.push_back(DepthJson(item));
@@ -150,13 +263,14 @@ Json ToJson(const RunEvaluation& evaluation) {
   Json json = {{"run", evaluation.run}};
   json["ground_truth"] =
       evaluation.trajectory ? Json(evaluation.ground_truth) : Json();
+  json["headline"] = HeadlineJson(HeadlineOf(evaluation));
   json["whole_model"] = evaluation.whole_model;
   json["with_unknown"] = evaluation.with_unknown;
   json.update(TrajectoryJson(evaluation.trajectory));
-  json["background"] =
-      evaluation.background ? ToJson(*evaluation.background) : Json();
+  json["background"] = BackgroundJson(evaluation);
   json["instances"] = instances;
-  json["tracks"] = evaluation.tracks ? TracksJson(*evaluation.tracks) : Json();
+  json["surfaces"] = shapes;
+  json["tracks"] = AllTracksJson(evaluation);
   json["depth_agreement"] = depth;
   json["skipped"] = evaluation.skipped;
   return json;

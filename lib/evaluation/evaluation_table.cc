@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include "splitfusion/lib/evaluation/mean_error.h"
@@ -74,18 +75,25 @@ std::string SurfaceRows(const std::string& name, const SurfaceError& error) {
   return rows + "\n";
 }
 
+std::string NameOf(const InstanceError& instance) {
+  return instance.name.empty() ? "instance " + std::to_string(instance.instance)
+                               : instance.name;
+}
+
 std::string InstanceRows(const InstanceError& instance) {
   const InstanceMeans means = MeanOf(instance);
-  const std::string name = instance.name.empty()
-                               ? "instance " + std::to_string(instance.instance)
-                               : instance.name;
+  const std::string name = NameOf(instance);
   std::string rows;
   if (means.surface_frames > 0) {
     rows += SurfaceRows(name, means.surface);
     rows += "    = surface " + std::to_string(instance.surface_id) + " (" +
-            instance.surface_label + "), tracked in " +
+            instance.surface_label + "), judged in " +
             std::to_string(means.surface_frames) + " of " +
-            std::to_string(instance.frames.size()) + " frames with truth\n";
+            std::to_string(instance.frames.size()) + " frames with truth" +
+            (means.frames_missing > 0
+                 ? ", missing in " + std::to_string(means.frames_missing)
+                 : "") +
+            "\n";
   }
   if (means.view_frames > 0) {
     rows += DistancesRow(name + " view", means.view.distances);
@@ -93,6 +101,57 @@ std::string InstanceRows(const InstanceError& instance) {
             " of " + std::to_string(means.view.pixels) + " pixels\n";
   }
   return rows;
+}
+
+std::string Percent(double share) { return Number(100 * share, "%9.2f"); }
+
+/// A percentage, or a dash.
+std::string PercentOrDash(const std::optional<double>& share) {
+  return share ? Percent(*share) : std::string(8, ' ') + "-";
+}
+
+/// Who is missing, and how much of what was seen is there; empty if nothing of
+/// that is known.
+std::string PresenceTable(const std::vector<InstanceError>& instances) {
+  std::string rows;
+  for (const InstanceError& instance : instances) {
+    if (!instance.presence && !instance.seen) continue;
+    const InstancePresence presence =
+        instance.presence.value_or(InstancePresence());
+    const SeenFrame seen = instance.seen.value_or(SeenScore()).Mean();
+    rows += Padded(NameOf(instance)) +
+            Number(static_cast<double>(presence.in_view.size()), "%9.0f") +
+            Number(static_cast<double>(presence.missing.size()), "%9.0f") +
+            Percent(presence.MissingShare());
+    if (instance.seen) {
+      rows += Number(seen.f_score, "%9.4f") + Number(seen.precision, "%9.4f") +
+              Number(seen.recall, "%9.4f");
+    }
+    rows += "\n";
+  }
+  if (rows.empty()) return "";
+  return Head("presence; of what was seen",
+              {"in view", "missing", "%", "F 20 mm", "precis.", "recall"}) +
+         rows;
+}
+
+std::string ShapeTable(const std::vector<SurfaceShape>& shapes) {
+  std::string text = Head("model area [%, cm]", {"stretch", "worst", "in frame",
+                                                 "edge", "stray", "worst"});
+  for (const SurfaceShape& shape : shapes) {
+    std::optional<double> stray, worst_stray;
+    if (shape.stray) {
+      stray = shape.stray->mean;
+      worst_stray = shape.stray->worst;
+    }
+    text +=
+        Padded(std::to_string(shape.surface_id) + " " + shape.surface_label) +
+        Percent(shape.stretched.mean) + Percent(shape.stretched.worst) +
+        Number(shape.stretched.worst_frame, "%9.0f") +
+        Number(100 * shape.longest_edge, "%9.1f") + PercentOrDash(stray) +
+        PercentOrDash(worst_stray) + "\n";
+  }
+  return text;
 }
 
 std::string TrackRows(const std::string& name, const TrackError& error) {
@@ -104,13 +163,19 @@ std::string TrackRows(const std::string& name, const TrackError& error) {
          row("if rigid", error.rigid);
 }
 
-std::string TrackTable(const TrackEvaluation& tracks) {
-  std::string text =
-      "tracks: " + std::to_string(tracks.errors.points) + " points of frame " +
-      std::to_string(tracks.errors.reference_frame) + " through " +
-      std::to_string(tracks.errors.frames) + " frames, " +
-      std::to_string(tracks.attached) + " attached" +
-      (tracks.by_mask ? " with the help of masks\n" : "\n");
+/// Which points were followed.
+std::string TrackLine(const TrackEvaluation& tracks) {
+  return "tracks: " + std::to_string(tracks.errors.points) +
+         " points of frame " + std::to_string(tracks.errors.reference_frame) +
+         " through " + std::to_string(tracks.errors.frames) + " frames, " +
+         std::to_string(tracks.attached) + " attached" +
+         (tracks.by_mask ? " with the help of masks\n" : "\n");
+}
+
+std::string TrackTable(const TrackEvaluation& tracks,
+                       const std::vector<TrackEvaluation>& references) {
+  std::string text;
+  for (const TrackEvaluation& item : references) text += TrackLine(item);
   text += Head("tracks [mm]", {"rmse", "mean", "median", "p90", "max"});
   text += TrackRows("all", tracks.errors.all);
   if (tracks.errors.instances.size() < 2) return text;
@@ -139,6 +204,11 @@ std::string SurfaceTable(const RunEvaluation& evaluation) {
   std::string text = SurfaceHead();
   if (evaluation.background) {
     text += SurfaceRows("background", *evaluation.background);
+    if (evaluation.ghosts) {
+      text += "    ghosts: " + std::to_string(evaluation.ghosts->far) + " of " +
+              std::to_string(evaluation.ghosts->vertices) + " vertices, " +
+              Number(100 * evaluation.ghosts->Share(), "%.2f %%\n");
+    }
   }
   for (const InstanceError& instance : evaluation.instances) {
     text += InstanceRows(instance);
@@ -183,7 +253,11 @@ std::string FormatTable(const RunEvaluation& evaluation) {
   };
   if (evaluation.trajectory) add(FormatTable(*evaluation.trajectory));
   add(SurfaceTable(evaluation));
-  if (evaluation.tracks) add(TrackTable(*evaluation.tracks));
+  add(PresenceTable(evaluation.instances));
+  if (!evaluation.shapes.empty()) add(ShapeTable(evaluation.shapes));
+  if (evaluation.tracks) {
+    add(TrackTable(*evaluation.tracks, evaluation.track_references));
+  }
   if (!evaluation.depth.empty()) add(DepthTable(evaluation.depth));
   add(SkippedLines(evaluation.skipped));
   return text;

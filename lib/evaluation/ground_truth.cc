@@ -39,24 +39,40 @@ std::vector<PosedMeshFile> FindPosedMeshes(const fs::path& folder) {
   return files;
 }
 
-/// {"instances": [{"id": 1, "name": "person1", ...}, ...]}
-std::map<int, std::string> ReadNames(const std::string& path) {
-  std::map<int, std::string> names;
-  if (path.empty()) return names;
+/// {"instances": [{"id": 1, "name": "person1", "moving": true, ...}, ...]}
+std::map<int, TrueInstance> ReadInstances(const std::string& path) {
+  std::map<int, TrueInstance> instances;
+  if (path.empty()) return instances;
   std::ifstream stream(path);
   try {
     const auto json = nlohmann::json::parse(stream);
     for (const auto& item : json.at("instances")) {
-      names[item.at("id").get<int>()] = item.at("name").get<std::string>();
+      instances[item.at("id").get<int>()] = {item.at("name").get<std::string>(),
+                                             item.value("moving", false),
+                                             item.value("rigid", false)};
     }
   } catch (const nlohmann::json::exception& error) {
     throw InputError(path + ": expected 'instances' with 'id' and 'name' (" +
                      error.what() + ")");
   }
-  return names;
+  return instances;
 }
 
 }  // namespace
+
+std::set<int> GroundTruth::MovingInstances() const {
+  std::set<int> moving;
+  for (const auto& [id, instance] : instances) {
+    if (instance.moving) moving.insert(id);
+  }
+  for (const PosedMeshFile& file : posed_meshes) moving.insert(file.instance);
+  return moving;
+}
+
+TrueInstance GroundTruth::Find(int instance) const {
+  const auto found = instances.find(instance);
+  return found != instances.end() ? found->second : TrueInstance();
+}
 
 GroundTruth ReadGroundTruth(const std::string& folder) {
   // A sequence may have its trajectory in both, meshes and tracks in gt alone.
@@ -77,7 +93,7 @@ GroundTruth ReadGroundTruth(const std::string& folder) {
   truth.tracks = IfExists(root / "tracks.bin");
   truth.labels = IfExists(root / "label");
   truth.posed_meshes = FindPosedMeshes(root / "mesh");
-  truth.names = ReadNames(IfExists(root / "labels.json"));
+  truth.instances = ReadInstances(IfExists(root / "labels.json"));
   return truth;
 }
 

@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_EVALUATION_GROUND_TRUTH_H_
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,13 @@ struct PosedMeshFile {
   std::string path;      ///< PLY, world frame.
 };
 
+/// An instance of the label images.
+struct TrueInstance {
+  std::string name;     ///< Of labels.json.
+  bool moving = false;  ///< As labels.json says; false if it does not.
+  bool rigid = false;   ///< The same.
+};
+
 /// What is known about a sequence. Paths are empty where there is nothing.
 struct GroundTruth {
   std::string folder;       ///< Where groundtruth.txt lies.
@@ -24,7 +32,12 @@ struct GroundTruth {
   std::string tracks;       ///< tracks.bin
   std::string labels;       ///< Folder label/ of STEM.png, instance per pixel.
   std::vector<PosedMeshFile> posed_meshes;  ///< mesh/instK_T.ply, by K and T.
-  std::map<int, std::string> names;  ///< Instance -> name, of labels.json.
+  std::map<int, TrueInstance> instances;    ///< By id, of labels.json.
+
+  /// Ids of the instances that move: labels.json says so, or there is a mesh.
+  std::set<int> MovingInstances() const;
+  /// An instance as labels.json has it, or else one without a name.
+  TrueInstance Find(int instance) const;
 };
 
 /// Finds ground truth in the subfolder `gt` of `folder` if that has a

@@ -16,44 +16,8 @@
 namespace splitfusion {
 namespace {
 
-/// Of a true mesh or pose from a frame, seconds.
-constexpr double kMaxTimeDifference = 0.02;
 /// Samples that suffice to tell which surface is which instance.
 constexpr int kMatchingSamples = 2000;
-
-/// A true mesh together with the frame of the run it belongs to.
-struct Occasion {
-  int instance = 0;
-  const RecordedFrame* frame = nullptr;
-  Rigid3d world_from_camera;  ///< True pose.
-  TrueSurface truth;          ///< World frame.
-};
-
-const RecordedFrame* FrameAt(const RecordedRun& run, double timestamp) {
-  const RecordedFrame* best = nullptr;
-  double best_difference = kMaxTimeDifference;
-  for (const RecordedFrame& frame : run.frames) {
-    const double difference = std::abs(frame.pose.timestamp - timestamp);
-    if (difference <= best_difference) {
-      best = &frame;
-      best_difference = difference;
-    }
-  }
-  return best;
-}
-
-std::optional<Rigid3d> TruePoseAt(const GroundTruth& truth, double timestamp) {
-  std::optional<Rigid3d> best;
-  double best_difference = kMaxTimeDifference;
-  for (const TimedPose& pose : truth.trajectory) {
-    const double difference = std::abs(pose.timestamp - timestamp);
-    if (difference <= best_difference) {
-      best = pose.world_from_camera;
-      best_difference = difference;
-    }
-  }
-  return best;
-}
 
 void CheckSize(const std::string& path, const cv::Size& size,
                const PinholeCamera& camera) {
@@ -64,34 +28,8 @@ void CheckSize(const std::string& path, const cv::Size& size,
   }
 }
 
-std::vector<Occasion> FindOccasions(const RecordedRun& run,
-                                    const GroundTruth& truth) {
-  std::vector<Occasion> occasions;
-  for (const PosedMeshFile& file : truth.posed_meshes) {
-    const RecordedFrame* frame = FrameAt(run, file.timestamp);
-    const auto pose = TruePoseAt(truth, file.timestamp);
-    if (frame == nullptr || !pose) continue;
-    occasions.push_back(
-        {file.instance, frame, *pose, ReadTrueSurface(file.path)});
-  }
-  return occasions;
-}
-
-TriangleMesh ModelInWorld(const AnimatedSurface& surface,
-                          const Occasion& occasion) {
-  TriangleMesh mesh;
-  mesh.triangles = surface.TrianglesAt(occasion.frame->index);
-  // Without triangles it would be taken for a cloud of all its vertices.
-  if (mesh.triangles.empty()) return mesh;
-  mesh.vertices = surface.VerticesAt(occasion.frame->index);
-  const Rigid3f world_from_camera = occasion.world_from_camera.cast<float>();
-  for (Eigen::Vector3f& vertex : mesh.vertices) {
-    vertex = world_from_camera * vertex;
-  }
-  return mesh;
-}
-
-SurfaceError CompareAt(const AnimatedSurface& surface, const Occasion& occasion,
+SurfaceError CompareAt(const AnimatedSurface& surface,
+                       const TrueOccasion& occasion,
                        const SurfaceErrorOptions& options) {
   return CompareSurfaces(ModelInWorld(surface, occasion), occasion.truth,
                          options);
@@ -100,11 +38,11 @@ SurfaceError CompareAt(const AnimatedSurface& surface, const Occasion& occasion,
 /// Instance -> surface (see CompareInstances), best pairs first.
 std::map<int, const AnimatedSurface*> MatchSurfaces(
     const std::vector<AnimatedSurface>& surfaces,
-    const std::vector<Occasion>& occasions, SurfaceErrorOptions options) {
+    const std::vector<TrueOccasion>& occasions, SurfaceErrorOptions options) {
   options.samples = std::min(options.samples, kMatchingSamples);
   std::map<std::pair<int, std::size_t>, double> scores;
   std::map<int, int> counts;
-  for (const Occasion& occasion : occasions) {
+  for (const TrueOccasion& occasion : occasions) {
     ++counts[occasion.instance];
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
       if (surfaces[i].background() ||
@@ -133,8 +71,8 @@ std::map<int, const AnimatedSurface*> MatchSurfaces(
 
 ViewError CompareView(const RecordedRun& run,
                       const std::vector<AnimatedSurface>& surfaces,
-                      const std::string& label_folder, const Occasion& occasion,
-                      double max_distance) {
+                      const std::string& label_folder,
+                      const TrueOccasion& occasion, double max_distance) {
   ViewError error;
   const std::filesystem::path path =
       std::filesystem::path(label_folder) / (occasion.frame->stem + ".png");
@@ -163,48 +101,101 @@ ViewError CompareView(const RecordedRun& run,
   return error;
 }
 
+ErrorStatistics AllAt(double distance, int count) {
+  return {count, distance, distance, distance, distance, distance};
+}
+
+/// That of a surface of which nothing is right.
+SurfaceError WorstSurfaceError(const SurfaceErrorOptions& options) {
+  SurfaceError error;
+  error.accuracy.statistics = AllAt(options.max_distance, options.samples);
+  error.completeness = error.accuracy;
+  return error;
+}
+
+/// The view of an instance at whose pixels nothing is right.
+ViewError Worst(ViewError view, double max_distance) {
+  view.uncovered = view.pixels;
+  view.distances = {AllAt(max_distance, view.pixels), {}};
+  return view;
+}
+
+/// Whether an instance that is in plain view is not shown by its surface.
+bool IsMissing(const InstancePresence* presence, const AnimatedSurface* matched,
+               int frame) {
+  if (presence == nullptr || !presence->InView(frame)) return false;
+  return presence->Missing(frame) || matched == nullptr ||
+         !matched->HasMotions(frame);
+}
+
 InstanceFrameError CompareOccasion(const RecordedRun& run,
                                    const std::vector<AnimatedSurface>& surfaces,
                                    const AnimatedSurface* matched,
+                                   const InstancePresence* presence,
                                    const GroundTruth& truth,
-                                   const Occasion& occasion,
+                                   const TrueOccasion& occasion,
                                    const SurfaceErrorOptions& options) {
   InstanceFrameError error;
   error.frame = occasion.frame->index;
-  if (matched != nullptr && matched->Tracked(error.frame)) {
+  error.missing = IsMissing(presence, matched, error.frame);
+  error.view =
+      CompareView(run, surfaces, truth.labels, occasion, options.max_distance);
+  if (error.missing) {
+    error.matched = true;
+    error.surface = WorstSurfaceError(options);
+    error.view = Worst(error.view, options.max_distance);
+  } else if (matched != nullptr &&
+             (matched->Tracked(error.frame) ||
+              (presence != nullptr && presence->InView(error.frame)))) {
     error.matched = true;
     error.surface = CompareAt(*matched, occasion, options);
   }
-  error.view =
-      CompareView(run, surfaces, truth.labels, occasion, options.max_distance);
   return error;
+}
+
+/// An instance without frames.
+InstanceError Describe(int id, const GroundTruth& truth,
+                       const AnimatedSurface* matched,
+                       const InstancePresence* presence) {
+  InstanceError instance;
+  instance.instance = id;
+  const TrueInstance described = truth.Find(id);
+  instance.name = described.name;
+  instance.rigid = described.rigid;
+  if (matched != nullptr) {
+    instance.surface_id = matched->recorded().id;
+    instance.surface_label = matched->recorded().label;
+  }
+  if (presence != nullptr) instance.presence = *presence;
+  return instance;
 }
 
 }  // namespace
 
 std::vector<InstanceError> CompareInstances(
     const RecordedRun& run, const std::vector<AnimatedSurface>& surfaces,
-    const GroundTruth& truth, const SurfaceErrorOptions& options) {
-  const std::vector<Occasion> occasions = FindOccasions(run, truth);
+    const GroundTruth& truth, const std::vector<TrueOccasion>& occasions,
+    const std::map<int, InstancePresence>& presences,
+    const SurfaceErrorOptions& options) {
+  std::set<int> ids;
+  for (const TrueOccasion& occasion : occasions) ids.insert(occasion.instance);
+  for (const auto& [id, presence] : presences) ids.insert(id);
   const auto matches = MatchSurfaces(surfaces, occasions, options);
-  std::map<int, InstanceError> instances;
-  for (const Occasion& occasion : occasions) {
-    InstanceError& instance = instances[occasion.instance];
-    instance.instance = occasion.instance;
-    const auto match = matches.find(occasion.instance);
+  std::vector<InstanceError> result;
+  for (const int id : ids) {
+    const auto match = matches.find(id);
     const AnimatedSurface* matched =
         match != matches.end() ? match->second : nullptr;
-    instance.frames.push_back(
-        CompareOccasion(run, surfaces, matched, truth, occasion, options));
-    if (matched != nullptr) {
-      instance.surface_id = matched->recorded().id;
-      instance.surface_label = matched->recorded().label;
+    const auto found = presences.find(id);
+    const InstancePresence* presence =
+        found != presences.end() ? &found->second : nullptr;
+    result.push_back(Describe(id, truth, matched, presence));
+    for (const TrueOccasion& occasion : occasions) {
+      if (occasion.instance != id) continue;
+      result.back().frames.push_back(CompareOccasion(
+          run, surfaces, matched, presence, truth, occasion, options));
     }
-    const auto name = truth.names.find(occasion.instance);
-    if (name != truth.names.end()) instance.name = name->second;
   }
-  std::vector<InstanceError> result;
-  for (auto& [id, instance] : instances) result.push_back(std::move(instance));
   return result;
 }
 

@@ -16,7 +16,7 @@ std::array<double, N> Mean(const std::vector<std::array<double, N>>& items) {
   return mean;
 }
 
-ErrorStatistics MeanOf(const std::vector<ErrorStatistics>& items) {
+ErrorStatistics Mean(const std::vector<ErrorStatistics>& items) {
   ErrorStatistics mean;
   const auto count = static_cast<double>(items.size());
   for (const ErrorStatistics& item : items) {
@@ -40,8 +40,16 @@ std::vector<Member> All(const std::vector<Item>& items, Member Item::*member) {
 
 }  // namespace
 
+ErrorStatistics MeanOf(std::vector<ErrorStatistics> items) {
+  items.erase(std::remove_if(
+                  items.begin(), items.end(),
+                  [](const ErrorStatistics& item) { return item.count == 0; }),
+              items.end());
+  return Mean(items);
+}
+
 SurfaceDistances MeanOf(const std::vector<SurfaceDistances>& items) {
-  return {MeanOf(All(items, &SurfaceDistances::statistics)),
+  return {Mean(All(items, &SurfaceDistances::statistics)),
           Mean(All(items, &SurfaceDistances::within))};
 }
 
@@ -54,9 +62,12 @@ SurfaceError MeanOf(const std::vector<SurfaceError>& items) {
 InstanceMeans MeanOf(const InstanceError& instance) {
   InstanceMeans means;
   std::vector<SurfaceError> surfaces;
+  std::vector<SurfaceError> shown;
   std::vector<SurfaceDistances> views;
   for (const InstanceFrameError& frame : instance.frames) {
     if (frame.matched) surfaces.push_back(frame.surface);
+    if (frame.matched && !frame.missing) shown.push_back(frame.surface);
+    means.frames_missing += frame.missing ? 1 : 0;
     if (frame.view.pixels == 0) continue;
     means.view.pixels += frame.view.pixels;
     means.view.uncovered += frame.view.uncovered;
@@ -64,6 +75,7 @@ InstanceMeans MeanOf(const InstanceError& instance) {
   }
   means.surface_frames = static_cast<int>(surfaces.size());
   means.surface = MeanOf(surfaces);
+  means.shown = MeanOf(shown);
   means.view_frames = static_cast<int>(views.size());
   means.view.distances = MeanOf(views);
   return means;

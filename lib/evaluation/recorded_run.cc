@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/deformation/graph_file.h"
 #include "splitfusion/lib/sequence/calibration.h"
 
 namespace splitfusion {

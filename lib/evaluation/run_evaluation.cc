@@ -1,16 +1,15 @@
 #include "splitfusion/lib/evaluation/run_evaluation.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
+#include <map>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/evaluation/live_images.h"
+#include "splitfusion/lib/evaluation/seen_score.h"
+#include "splitfusion/lib/evaluation/true_occasion.h"
 
 namespace splitfusion {
 namespace {
-
-/// Largest difference of a run's frame from the true pose of that index.
-constexpr double kMaxTimeDifference = 0.02;
 
 TriangleMesh Transformed(TriangleMesh mesh, const Rigid3d& motion) {
   const Rigid3f motion_f = motion.cast<float>();
@@ -30,21 +29,73 @@ void EvaluateBackground(const std::vector<AnimatedSurface>& surfaces,
   } else if (found == surfaces.end() || found->recorded().mesh.empty()) {
     result->skipped.push_back("background surface: the run has none");
   } else {
-    result->background = CompareSurfaces(
+    const TriangleMesh mesh =
         Transformed(found->recorded().mesh,
-                    result->trajectory->truth_from_estimate_by_poses),
-        ReadTrueSurface(truth.static_mesh), options);
+                    result->trajectory->truth_from_estimate_by_poses);
+    const TrueSurface scene = ReadTrueSurface(truth.static_mesh);
+    result->background = CompareSurfaces(mesh, scene, options);
+    result->ghosts = CountGhosts(mesh, scene.mesh);
   }
 }
 
-void EvaluateInstances(const RecordedRun& run,
-                       const std::vector<AnimatedSurface>& surfaces,
-                       const GroundTruth& truth, SurfaceErrorOptions options,
-                       RunEvaluation* result) {
-  // `seen` and `label` are properties of the static mesh.
-  options.label.reset();
-  result->instances = CompareInstances(run, surfaces, truth, options);
-  if (result->instances.empty()) {
+/// The live images, or none, and why.
+std::optional<LiveImages> OpenLiveImages(const RecordedRun& run,
+                                         RunEvaluation* result) {
+  try {
+    return LiveImages(run);
+  } catch (const InputError& error) {
+    result->skipped.push_back(
+        std::string("stray area, presence and what was seen: ") + error.what());
+    return std::nullopt;
+  }
+}
+
+ModelInspection Inspect(const RecordedRun& run,
+                        const std::vector<AnimatedSurface>& surfaces,
+                        const std::optional<LiveImages>& live,
+                        const GroundTruth& truth,
+                        const EvaluationOptions& options,
+                        RunEvaluation* result) {
+  if (options.presence_every == 0) {
+    result->skipped.push_back("presence, stretched area: not asked for");
+    return {};
+  }
+  const InstanceLabels labels{truth.labels, truth.MovingInstances()};
+  try {
+    return InspectModels(run, surfaces, live ? &*live : nullptr, labels,
+                         options.presence_every);
+  } catch (const InputError& error) {
+    result->skipped.push_back(std::string("stray area, presence: ") +
+                              error.what());
+    return InspectModels(run, surfaces, nullptr, labels,
+                         options.presence_every);
+  }
+}
+
+void AddSeenScores(const std::vector<AnimatedSurface>& surfaces,
+                   const std::vector<TrueOccasion>& occasions,
+                   const LiveImages& live, const GroundTruth& truth,
+                   const EvaluationOptions& options, RunEvaluation* result) {
+  std::map<int, SeenScore> scores;
+  try {
+    scores = ScoreSeen(surfaces, occasions, live, truth.labels,
+                       options.presence.plain_view_pixels);
+  } catch (const InputError& error) {
+    result->skipped.push_back(std::string("F-score of what was seen: ") +
+                              error.what());
+  }
+  for (InstanceError& instance : result->instances) {
+    if (instance.rigid) continue;
+    const auto found = scores.find(instance.instance);
+    if (found != scores.end() && !found->second.frames.empty()) {
+      instance.seen = found->second;
+    }
+  }
+}
+
+void SayWhatInstancesLack(const RecordedRun& run, const GroundTruth& truth,
+                          bool occasions, RunEvaluation* result) {
+  if (!occasions) {
     result->skipped.push_back(
         "instance surfaces: no mesh/instK_T.ply of a frame of the run");
     return;
@@ -61,86 +112,43 @@ void EvaluateInstances(const RecordedRun& run,
   }
 }
 
-/// The frame in which most points are visible and that has `frames` successors
-/// in the run and in the tracks; -1 if no point is visible in any.
-int BestTrackFrame(const RecordedRun& run, const TrueTracks& tracks,
-                   int frames) {
-  int best = -1;
-  int best_count = 0;
-  for (int f = 0; f + frames < tracks.frames(); ++f) {
-    const int count = tracks.VisibleCount(f);
-    if (count > best_count && run.Find(f) != nullptr &&
-        run.Find(f + frames) != nullptr) {
-      best = f;
-      best_count = count;
-    }
-  }
-  return best;
-}
-
-/// Why the true tracks cannot be followed from `frame`; empty if they can.
-std::string TrackObstacle(const RecordedRun& run, const GroundTruth& truth,
-                          const TrueTracks& tracks, int frame) {
-  const RecordedFrame* found = run.Find(frame);
-  const int true_frames =
-      std::min(tracks.frames(), static_cast<int>(truth.trajectory.size()));
-  const std::string name = "frame " + std::to_string(frame);
-  if (found == nullptr) return name + " is not in the run";
-  if (frame < 0 || frame >= true_frames) return name + " has no truth";
-  const double difference =
-      std::abs(found->pose.timestamp - truth.trajectory[frame].timestamp);
-  if (difference > kMaxTimeDifference) {
-    return name + " of the run and of the truth differ by " +
-           std::to_string(difference) + " s";
-  }
-  if (tracks.VisibleCount(frame) == 0) return "no point visible in " + name;
-  return "";
-}
-
-std::vector<Rigid3d> TruePoses(const GroundTruth& truth) {
-  std::vector<Rigid3d> poses;
-  for (const TimedPose& pose : truth.trajectory) {
-    poses.push_back(pose.world_from_camera);
-  }
-  return poses;
-}
-
-void EvaluateTracks(const RecordedRun& run,
+/// The instances of the truth, and the shapes of all surfaces.
+void EvaluateModels(const RecordedRun& run,
                     const std::vector<AnimatedSurface>& surfaces,
                     const GroundTruth& truth, const EvaluationOptions& options,
                     RunEvaluation* result) {
-  if (truth.tracks.empty()) {
-    result->skipped.push_back("track error: no tracks.bin");
-    return;
+  const std::optional<LiveImages> live = OpenLiveImages(run, result);
+  const ModelInspection inspection =
+      Inspect(run, surfaces, live, truth, options, result);
+  result->shapes = inspection.shapes;
+  std::map<int, InstancePresence> presences;
+  for (const auto& [instance, sightings] : inspection.sightings) {
+    presences[instance] = JudgePresence(sightings, options.presence);
   }
-  const TrueTracks tracks = TrueTracks::Read(truth.tracks);
-  const int frame =
-      options.track_frame >= 0
-          ? options.track_frame
-          : std::max(BestTrackFrame(run, tracks, options.track_frames), 0);
-  const std::string obstacle = TrackObstacle(run, truth, tracks, frame);
-  if (!obstacle.empty()) {
-    result->skipped.push_back("track error: " + obstacle);
-    return;
+  const std::vector<TrueOccasion> occasions = FindOccasions(run, truth);
+  SurfaceErrorOptions surface = options.surface;
+  surface.label.reset();  // A property of the static mesh.
+  result->instances =
+      CompareInstances(run, surfaces, truth, occasions, presences, surface);
+  for (InstanceError& instance : result->instances) {
+    for (const SurfaceShape& shape : result->shapes) {
+      if (shape.surface_id == instance.surface_id) instance.shape = shape;
+    }
   }
-  const std::vector<Rigid3d> poses = TruePoses(truth);
-  const int last = std::min(frame + options.track_frames, tracks.frames() - 1);
-  const FollowedPoints followed =
-      FollowPoints(run, surfaces, tracks.Queries(frame, poses[frame]),
-                   last - frame, options.attachment);
-  result->tracks = {CompareTracks(followed.points, tracks, poses, frame),
-                    followed.attached, followed.unattached, followed.by_mask};
+  if (live) {
+    AddSeenScores(surfaces, occasions, *live, truth, options, result);
+  }
 }
 
 void EvaluateDepth(const RecordedRun& run,
                    const std::vector<AnimatedSurface>& surfaces, int every,
-                   RunEvaluation* result) {
+                   int plain_view_pixels, RunEvaluation* result) {
   if (every == 0) {
     result->skipped.push_back("depth agreement: not asked for");
     return;
   }
   try {
-    result->depth = CompareDepth(run, surfaces, every);
+    result->depth = CompareDepth(run, surfaces, every, plain_view_pixels);
   } catch (const InputError& error) {
     result->skipped.push_back(std::string("depth agreement: ") + error.what());
   }
@@ -155,8 +163,13 @@ void EvaluateAgainstTruth(const RecordedRun& run,
   result->trajectory = CompareTrajectories(
       run.EstimatedTrajectory(), truth.trajectory, options.trajectory);
   EvaluateBackground(surfaces, truth, options.surface, result);
-  EvaluateInstances(run, surfaces, truth, options.surface, result);
-  EvaluateTracks(run, surfaces, truth, options, result);
+  EvaluateModels(run, surfaces, truth, options, result);
+  SayWhatInstancesLack(run, truth, !truth.posed_meshes.empty(), result);
+  result->track_references =
+      EvaluateTracks(run, surfaces, truth, options.tracks, &result->skipped);
+  if (!result->track_references.empty()) {
+    result->tracks = MeanOf(result->track_references);
+  }
 }
 
 }  // namespace
@@ -164,11 +177,10 @@ void EvaluateAgainstTruth(const RecordedRun& run,
 void EvaluationOptions::Check() const {
   trajectory.Check();
   surface.Check();
-  attachment.Check();
-  CheckOption(track_frame >= -1, "track_frame", track_frame,
-              "a frame index, or -1");
-  CheckOption(track_frames >= 1 && track_frames <= 1000000, "track_frames",
-              track_frames, "1..1000000");
+  tracks.Check();
+  presence.Check();
+  CheckOption(presence_every >= 0, "presence_every", presence_every,
+              "a number of frames, or 0");
   CheckOption(depth_every >= 0, "depth_every", depth_every,
               "a number of frames, or 0");
 }
@@ -185,8 +197,10 @@ RunEvaluation EvaluateRun(const RecordedRun& run,
   } else {
     result.skipped.push_back(
         "trajectory, surfaces and tracks: no ground truth given");
+    EvaluateModels(run, surfaces, GroundTruth(), options, &result);
   }
-  EvaluateDepth(run, surfaces, options.depth_every, &result);
+  EvaluateDepth(run, surfaces, options.depth_every,
+                options.presence.plain_view_pixels, &result);
   return result;
 }
 

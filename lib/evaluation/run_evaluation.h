@@ -7,12 +7,14 @@
 
 #include "splitfusion/lib/evaluation/animated_surface.h"
 #include "splitfusion/lib/evaluation/depth_agreement.h"
+#include "splitfusion/lib/evaluation/ghosts.h"
 #include "splitfusion/lib/evaluation/ground_truth.h"
 #include "splitfusion/lib/evaluation/instance_error.h"
-#include "splitfusion/lib/evaluation/point_follower.h"
+#include "splitfusion/lib/evaluation/model_inspection.h"
+#include "splitfusion/lib/evaluation/presence.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
 #include "splitfusion/lib/evaluation/surface_error.h"
-#include "splitfusion/lib/evaluation/track_error.h"
+#include "splitfusion/lib/evaluation/track_evaluation.h"
 #include "splitfusion/lib/evaluation/trajectory_error.h"
 
 namespace splitfusion {
@@ -21,24 +23,16 @@ namespace splitfusion {
 struct EvaluationOptions {
   TrajectoryErrorOptions trajectory;  ///< ATE, RPE.
   SurfaceErrorOptions surface;        ///< Background and instances.
-  AttachmentOptions attachment;       ///< Of track points.
-  /// Frame in which the track points are given; -1 = the one in which most of
-  /// them are visible (the first of these), `track_frames` before the end.
-  int track_frame = -1;
-  int track_frames = 30;  ///< Frames through which they are followed.
+  TrackOptions tracks;                ///< Track error.
+  PresenceOptions presence;           ///< Of instances.
+  /// Presence, stretched and stray area are looked at in every n-th frame; 0 =
+  /// not at all.
+  int presence_every = 1;
   /// Depth agreement is measured in every n-th frame; 0 = not at all.
   int depth_every = 10;
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
-};
-
-/// Result of following the true track points through a run.
-struct TrackEvaluation {
-  TrackErrors errors;    ///< Against the truth, metres.
-  int attached = 0;      ///< Points attached to a surface.
-  int unattached = 0;    ///< Points that stayed where they were.
-  bool by_mask = false;  ///< Whether masks told the surface of a point.
 };
 
 /// All that a run can be measured by. What is empty was not known; `skipped`
@@ -56,15 +50,19 @@ struct RunEvaluation {
   /// The background's mesh, put into the true world by
   /// TrajectoryError::truth_from_estimate_by_poses.
   std::optional<SurfaceError> background;
+  std::optional<Ghosts> ghosts;           ///< Of the same mesh.
   std::vector<InstanceError> instances;   ///< By instance.
-  std::optional<TrackEvaluation> tracks;  ///< Track error.
-  std::vector<DepthAgreement> depth;      ///< With the live depth; by id.
-  std::vector<std::string> skipped;       ///< What was not evaluated, and why.
+  std::vector<SurfaceShape> shapes;       ///< By surface; no truth needed.
+  std::optional<TrackEvaluation> tracks;  ///< Mean over the reference frames.
+  std::vector<TrackEvaluation> track_references;  ///< Each of them.
+  std::vector<DepthAgreement> depth;  ///< With the live depth; by id.
+  std::vector<std::string> skipped;   ///< What was not evaluated, and why.
 };
 
 /// Evaluates a run without tracking again. `surfaces`: those of `run`; without
-/// `truth` by the depth agreement alone. That needs the sequence, which may be
-/// gone: what is wrong with it is a line of `skipped`.
+/// `truth` by the depth agreement and the surfaces' shapes alone. That,
+/// presence and what was seen need the sequence, which may be gone: what is
+/// wrong with it is a line of `skipped`.
 ///
 /// @throw InputError if fewer than three poses match, or if a file of the
 ///     ground truth is broken.

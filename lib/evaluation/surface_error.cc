@@ -25,8 +25,10 @@ std::vector<Eigen::Vector3f> SampleVertices(
   return points;
 }
 
-/// Running sum of the areas of the triangles, square metres.
-std::vector<double> CumulativeAreas(const TriangleMesh& mesh) {
+/// Running sum of the areas of the triangles, square metres, each times its
+/// weight if there are weights.
+std::vector<double> CumulativeAreas(const TriangleMesh& mesh,
+                                    const std::vector<double>& weights) {
   std::vector<double> sums;
   sums.reserve(mesh.triangles.size());
   double sum = 0;
@@ -34,7 +36,8 @@ std::vector<double> CumulativeAreas(const TriangleMesh& mesh) {
     const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
     const Eigen::Vector3d ab = mesh.vertices[t[1]].cast<double>() - a;
     const Eigen::Vector3d ac = mesh.vertices[t[2]].cast<double>() - a;
-    sum += 0.5 * ab.cross(ac).norm();
+    const double weight = weights.empty() ? 1 : weights[sums.size()];
+    sum += 0.5 * ab.cross(ac).norm() * weight;
     sums.push_back(sum);
   }
   return sums;
@@ -101,12 +104,13 @@ TrueSurface ReadTrueSurface(const std::string& path) {
 }
 
 std::vector<Eigen::Vector3f> SampleSurface(const TriangleMesh& mesh, int count,
-                                           unsigned seed) {
+                                           unsigned seed,
+                                           const std::vector<double>& weights) {
   std::mt19937 random(seed);
   if (mesh.triangles.empty()) {
     return SampleVertices(mesh.vertices, count, &random);
   }
-  const std::vector<double> areas = CumulativeAreas(mesh);
+  const std::vector<double> areas = CumulativeAreas(mesh, weights);
   std::vector<Eigen::Vector3f> points;
   if (!(areas.back() > 0)) return points;
   points.reserve(count);
@@ -121,6 +125,10 @@ std::vector<Eigen::Vector3f> SampleSurface(const TriangleMesh& mesh, int count,
     points.push_back(PointOfTriangle(mesh, mesh.triangles[t], u, v));
   }
   return points;
+}
+
+double HarmonicMean(double a, double b) {
+  return a + b > 0 ? 2 * a * b / (a + b) : 0;
 }
 
 std::vector<double> DistancesToSurface(
@@ -166,9 +174,8 @@ SurfaceError CompareSurfaces(const TriangleMesh& reconstructed,
       SampleSurface(visible, options.samples, kCompletenessSeed), reconstructed,
       options.max_distance));
   for (std::size_t i = 0; i < kSurfaceThresholds.size(); ++i) {
-    const double a = error.accuracy.within[i];
-    const double c = error.completeness.within[i];
-    error.f_score[i] = a + c > 0 ? 2 * a * c / (a + c) : 0;
+    error.f_score[i] =
+        HarmonicMean(error.accuracy.within[i], error.completeness.within[i]);
   }
   return error;
 }

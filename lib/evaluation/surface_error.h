@@ -54,8 +54,14 @@ struct SurfaceError {
 
 /// `count` random points, uniform over the area of the triangles of `mesh`; of
 /// a mesh without triangles, that many of its vertices. Repeatable by `seed`.
-std::vector<Eigen::Vector3f> SampleSurface(const TriangleMesh& mesh, int count,
-                                           unsigned seed);
+/// `weights`: empty, or a factor on the area of every triangle; no point if all
+/// are 0.
+std::vector<Eigen::Vector3f> SampleSurface(
+    const TriangleMesh& mesh, int count, unsigned seed,
+    const std::vector<double>& weights = {});
+
+/// Harmonic mean of two fractions; 0 if both are.
+double HarmonicMean(double a, double b);
 
 /// Distances from points to a surface (exact, point to triangle; to vertices
 /// if it has no triangles), clipped to `max_distance`; metres.

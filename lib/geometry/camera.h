@@ -32,6 +32,12 @@ struct PinholeCamera {
   /// `stride`-th row, beginning with pixel (0, 0).
   PinholeCamera Subsampled(int stride) const;
 
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(width, height, fx, fy, cx, cy);
+  }
+
   /// @throw InputError if a size or focal length is not positive, or a view ray
   ///     leans by more than 79 degrees (wrong units).
   void Check() const;

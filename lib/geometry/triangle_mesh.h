@@ -20,6 +20,12 @@ struct TriangleMesh {
 
   /// Whether there is no vertex.
   bool empty() const { return vertices.empty(); }
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(vertices, normals, colors, triangles);
+  }
 };
 
 /// Area-weighted vertex normals from the triangles; zero where no triangle is.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/peak_memory.h"
@@ -19,58 +20,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsUsed(const std::string& root) {
-  for (const auto& entry : fs::directory_iterator(root)) {
-    if (entry.path().extension() != ".log") return true;
-  }
-  return false;
-}
-
-/// All that a run writes.
-std::vector<std::string> Contents(const RunPaths& paths) {
-  std::vector<std::string> contents = {paths.Options(),    paths.Calibration(),
-                                       paths.Trajectory(), paths.Frames(),
-                                       paths.Iterations(), paths.Summary(),
-                                       paths.Evaluation(), paths.HtmlReport()};
-  for (const char* folder :
-       {"surfaces", "pictures", "masks", "detections", "solver"}) {
-    contents.push_back((fs::path(paths.root()) / folder).string());
-  }
-  return contents;
-}
-
-/// @throw InputError if clearing the folder would delete what no run wrote.
-void CheckIsRun(const RunPaths& paths) {
-  if (fs::exists(paths.Options())) return;
-  for (const std::string& path : Contents(paths)) {
-    if (fs::exists(path)) {
-      throw InputError(path + ": is not of a run, for " + paths.Options() +
-                       " is missing; expected a run directory to overwrite");
-    }
-  }
-}
-
-void MakeRoot(const std::string& root, bool overwrite) {
-  std::error_code error;
-  fs::create_directories(root, error);
-  if (error || !fs::is_directory(root)) {
-    throw InputError(root + ": cannot be made a run directory (" +
-                     (error ? error.message() : "not a directory") + ")");
-  }
-  if (!IsUsed(root)) return;
-  if (overwrite) {
-    CheckIsRun(RunPaths(root));
-    ClearRun(RunPaths(root));
-  } else {
-    throw InputError(root +
-                     ": is not empty: expected a new or empty run "
-                     "directory, or --overwrite");
-  }
-}
-
+/// To be written on at its end.
 void Open(const std::string& path, std::ofstream* stream) {
-  stream->open(path, std::ios::binary | std::ios::trunc);
+  stream->open(path, std::ios::binary | std::ios::app | std::ios::ate);
   if (!*stream) throw InputError(path + ": cannot be written");
+}
+
+/// Opens a stream that held so many bytes, and maybe more since.
+void CutTo(const std::string& path, std::uint64_t size, std::ofstream* stream) {
+  std::error_code error;
+  if (fs::file_size(path, error) < size || error) {
+    throw InputError(path + ": is shorter than at the checkpoint: expected " +
+                     std::to_string(size) + " bytes");
+  }
+  stream->close();
+  fs::resize_file(path, size);
+  Open(path, stream);
 }
 
 void Flush(const std::string& path, std::ofstream* stream) {
@@ -111,36 +76,49 @@ void WriteText(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-void ClearRun(const RunPaths& paths) {
-  std::error_code ignored;
-  for (const std::string& path : Contents(paths)) {
-    fs::remove_all(path, ignored);
-  }
-}
-
 bool IsComplete(const RunPaths& paths) {
   std::ifstream stream(paths.Summary());
   const auto summary = nlohmann::json::parse(stream, nullptr, false);
   return summary.is_object() && summary.value("complete", false);
 }
 
-RunDirectory::RunDirectory(const std::string& root, bool overwrite,
-                           RunFacts facts)
+RunDirectory::RunDirectory(const std::string& root, RunFacts facts,
+                           bool goes_on)
     : paths_(root), facts_(std::move(facts)) {
-  MakeRoot(root, overwrite);
   WriteText(paths_.Options(), OptionsText(facts_));
-  OpenStreams();
+  for (const auto& [path, stream] : Streams()) {
+    if (!goes_on) fs::remove(path);
+    Open(path, stream);
+  }
+  WriteHeads();
 }
 
-void RunDirectory::OpenStreams() {
-  Open(paths_.Frames(), &frames_);
-  Open(paths_.Iterations(), &iterations_);
-  Open(paths_.Trajectory(), &trajectory_);
-  WriteIterationsHeader(iterations_);
-  WriteTumHeader(trajectory_);
+std::vector<std::pair<std::string, std::ofstream*>> RunDirectory::Streams() {
+  return {{paths_.Frames(), &frames_},
+          {paths_.Iterations(), &iterations_},
+          {paths_.Trajectory(), &trajectory_}};
+}
+
+void RunDirectory::WriteHeads() {
+  if (iterations_.tellp() == 0) WriteIterationsHeader(iterations_);
+  if (trajectory_.tellp() == 0) WriteTumHeader(trajectory_);
   Flush(paths_.Iterations(), &iterations_);
   Flush(paths_.Trajectory(), &trajectory_);
 }
+
+template <typename Archive>
+void RunDirectory::Serialize(Archive* archive) {
+  archive->Section("run directory");
+  (*archive)(builder_, seconds_writing_);
+  for (const auto& [path, stream] : Streams()) {
+    std::uint64_t size = stream->tellp();
+    (*archive)(size);
+    if constexpr (Archive::kReads) CutTo(path, size, stream);
+  }
+}
+
+template void RunDirectory::Serialize(ArchiveWriter*);
+template void RunDirectory::Serialize(ArchiveReader*);
 
 void RunDirectory::AddFrame(const FrameReport& report, const TimedPose& pose) {
   const Stopwatch stopwatch;
@@ -165,9 +143,12 @@ RunSummary RunDirectory::Summary() const {
   return summary;
 }
 
-void RunDirectory::Finish(bool complete) const {
+void RunDirectory::Finish(const RunEnding& ending) const {
   RunSummary facts = Summary();
-  facts.complete = complete;
+  facts.complete = ending.status == RunStatus::kComplete;
+  facts.status = ToString(ending.status);
+  facts.error = ending.error;
+  facts.resumed_at = ending.resumed_at;
   const nlohmann::ordered_json summary = ToJson(facts);
   WriteHtmlReport(paths_, summary);
   WriteText(paths_.Summary(), JsonText(summary, 2) + "\n");

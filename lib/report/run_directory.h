@@ -4,8 +4,11 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "splitfusion/lib/report/frame_report.h"
+#include "splitfusion/lib/report/run_marker.h"
 #include "splitfusion/lib/report/run_paths.h"
 #include "splitfusion/lib/report/run_summary.h"
 #include "splitfusion/lib/sequence/trajectory.h"
@@ -19,25 +22,35 @@ struct RunFacts {
   std::map<std::string, std::string> versions;  ///< LibraryVersions().
 };
 
-/// Removes what a run leaves in its directory (see RunPaths) and nothing else.
-/// A missing directory is fine.
-void ClearRun(const RunPaths& paths);
+/// How a run ended.
+struct RunEnding {
+  RunStatus status = RunStatus::kComplete;  ///< Only this is a success.
+  std::string error;                        ///< Of a failed run, one line.
+  std::vector<int> resumed_at;              ///< Frames from which it went on.
+};
 
 /// Whether the summary of a run is there and says that it is complete.
 bool IsComplete(const RunPaths& paths);
 
 /// Writes the report of a run while it happens: after every frame the lines of
 /// that frame are on disk, so a crash leaves the account of all frames before.
+/// RunFolder says where a run writes, and puts it into place.
 /// Formats: docs/report_format.md.
 class RunDirectory {
  public:
-  /// Creates `root` with options.flags and the heads of the streams. With
-  /// `overwrite` an earlier run in it is cleared; log files (*.log) never
-  /// count.
+  /// Writes options.flags and the heads of the streams into `root`, which is
+  /// made if it is missing. `goes_on`: streams that are there are kept, for
+  /// Serialize() to cut them.
   ///
-  /// @throw InputError if `root` is not empty (and not `overwrite`), not a
-  ///     directory, or not writable.
-  RunDirectory(const std::string& root, bool overwrite, RunFacts facts);
+  /// @throw InputError if a file cannot be written.
+  RunDirectory(const std::string& root, RunFacts facts, bool goes_on = false);
+
+  /// Saves or restores what was reported so far, see lib/base/archive.h. The
+  /// streams are cut to what they held then.
+  ///
+  /// @throw InputError if a stream holds less than it did.
+  template <typename Archive>
+  void Serialize(Archive* archive);
 
   /// Where everything of this run lies.
   const RunPaths& paths() const { return paths_; }
@@ -60,14 +73,14 @@ class RunDirectory {
   /// Summary of the frames so far.
   RunSummary Summary() const;
 
-  /// Writes summary.json and report.html; the last call of a run. `complete`:
-  /// whether the whole sequence was processed; it is in the summary.
-  ///
-  /// @throw InputError if a file cannot be written.
-  void Finish(bool complete = true) const;
+  /// Writes summary.json and report.html; the last call of a run. The ending
+  /// stands in both. @throw InputError if a file cannot be written.
+  void Finish(const RunEnding& ending = {}) const;
 
  private:
-  void OpenStreams();
+  /// The streams with their paths.
+  std::vector<std::pair<std::string, std::ofstream*>> Streams();
+  void WriteHeads();
 
   RunPaths paths_;
   RunFacts facts_;

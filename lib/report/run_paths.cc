@@ -13,6 +13,9 @@ std::string Digits(int value, std::size_t width) {
   return digits;
 }
 
+/// File systems take 255 bytes; the id at the beginning keeps names apart.
+constexpr std::size_t kMaxSurfaceName = 64;
+
 bool IsPlain(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.';
 }
@@ -21,6 +24,10 @@ bool IsPlain(char c) {
 
 RunPaths::RunPaths(std::string root) : root_(std::move(root)) {}
 
+std::string RunPaths::Marker() const { return Below("run.json"); }
+std::string RunPaths::Lock() const { return Below("lock"); }
+std::string RunPaths::Unfinished() const { return Below("unfinished"); }
+std::string RunPaths::Checkpoint() const { return Below("checkpoint.bin"); }
 std::string RunPaths::Options() const { return Below("options.flags"); }
 std::string RunPaths::Calibration() const { return Below("calibration.txt"); }
 std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }
@@ -59,7 +66,7 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
   for (char& c : name) {
     if (!IsPlain(c)) c = '_';
   }
-  return name;
+  return name.substr(0, kMaxSurfaceName);
 }
 
 std::string RunPaths::FrameName(int frame) { return Digits(frame, 6); }

@@ -14,6 +14,10 @@ class RunPaths {
 
   /// The run directory itself.
   const std::string& root() const { return root_; }
+  std::string Marker() const;       ///< RUN/run.json
+  std::string Lock() const;         ///< RUN/lock
+  std::string Unfinished() const;   ///< RUN/unfinished, of a run that goes on
+  std::string Checkpoint() const;   ///< RUN/checkpoint.bin
   std::string Options() const;      ///< RUN/options.flags
   std::string Calibration() const;  ///< RUN/calibration.txt
   std::string Trajectory() const;   ///< RUN/trajectory.txt
@@ -31,7 +35,8 @@ class RunPaths {
   /// RUN/masks/STEM.png, 16-bit surface ids; `stem` of the depth file.
   std::string Mask(const std::string& stem) const;
   /// RUN/surfaces/NNN_LABEL; characters of the label other than letters,
-  /// digits, hyphens and dots become underscores.
+  /// digits, hyphens and dots become underscores, and the name ends after 64
+  /// characters.
   std::string Surface(int id, const std::string& label) const;
   /// RUN/surfaces/NNN_LABEL/warped/FRAME.ply
   std::string WarpedMesh(int id, const std::string& label, int frame) const;

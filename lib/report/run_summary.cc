@@ -9,9 +9,38 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool AnyLost(const FrameReport& report) {
+bool AnyIs(const char* state, const FrameReport& report) {
   return std::any_of(report.surfaces.begin(), report.surfaces.end(),
-                     [](const auto& s) { return s.state == "lost"; });
+                     [&](const auto& s) { return s.state == state; });
+}
+
+bool IsAway(const std::string& state) {
+  return state == "lost" || state == "hidden" || state == "unseen";
+}
+
+/// "3 frames", "1 frame".
+std::string Frames(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " frame" : " frames");
+}
+
+/// What is to be said of a surface that was lost or occluded; else empty.
+std::string Trouble(const SurfaceSummary& surface) {
+  std::string text;
+  const auto add = [&text](const std::string& what) {
+    if (!text.empty()) text += ", ";
+    text += what;
+  };
+  if (!surface.lost.empty()) add("lost in " + Frames(surface.lost.size()));
+  if (!surface.hidden.empty()) {
+    add("occluded in " + Frames(surface.hidden.size()));
+  }
+  if (text.empty()) return text;
+  if (surface.away_since >= 0) {
+    add("not found again since frame " + std::to_string(surface.away_since));
+  } else if (!surface.refound.empty()) {
+    add("found again");
+  }
+  return "; " + std::to_string(surface.id) + " " + surface.label + " " + text;
 }
 
 Json ToJson(const SurfaceSummary& surface) {
@@ -24,7 +53,13 @@ Json ToJson(const SurfaceSummary& surface) {
           {"node_spacing", surface.node_spacing},
           {"vertices", surface.vertices},
           {"lost", surface.lost},
-          {"hidden", surface.hidden}};
+          {"hidden", surface.hidden},
+          {"lost_frames", surface.lost.size()},
+          {"occluded_frames", surface.hidden.size()},
+          {"refound_frames", surface.refound.size()},
+          {"refound", surface.refound},
+          {"away_since",
+           surface.away_since >= 0 ? Json(surface.away_since) : Json()}};
 }
 
 Json SecondsPerFrame(const RunSummary& summary) {
@@ -39,13 +74,31 @@ Json SecondsPerFrame(const RunSummary& summary) {
 
 }  // namespace
 
+std::string VerdictLine(const RunSummary& summary) {
+  std::string troubles;
+  for (const SurfaceSummary& surface : summary.surfaces) {
+    troubles += Trouble(surface);
+  }
+  const std::size_t surfaces = summary.surfaces.size();
+  return std::string(summary.complete ? "" : "incomplete: ") +
+         Frames(summary.frames) + ", " + std::to_string(surfaces) +
+         (surfaces == 1 ? " surface" : " surfaces") +
+         (troubles.empty() ? ", none lost or occluded" : troubles);
+}
+
 Json ToJson(const RunSummary& summary) {
   Json surfaces = Json::array();
   for (const auto& item : summary.surfaces) surfaces.push_back(ToJson(item));
   return {{"complete", summary.complete},
+          {"status", summary.status},
+          {"error", summary.error},
+          {"resumed_at", summary.resumed_at},
           {"preset", summary.preset},
           {"frames", summary.frames},
+          {"verdict", VerdictLine(summary)},
           {"lost_frames", summary.lost_frames},
+          {"occluded_frames", summary.occluded_frames},
+          {"refound_frames", summary.refound_frames},
           {"seconds_per_frame", SecondsPerFrame(summary)},
           {"seconds_writing", summary.seconds_writing},
           {"peak_memory_bytes", summary.peak_memory_bytes},
@@ -54,20 +107,24 @@ Json ToJson(const RunSummary& summary) {
 }
 
 void SummaryBuilder::Add(const FrameReport& report) {
-  if (AnyLost(report)) ++lost_frames_;
+  if (AnyIs("lost", report)) ++lost_frames_;
+  if (AnyIs("hidden", report)) ++occluded_frames_;
   seconds_.push_back(report.total_seconds);
   for (std::size_t i = 0; i < kFrameParts.size(); ++i) {
     part_sums_[i] += report.*kFrameParts[i].seconds;
   }
+  bool any_refound = false;
   for (const SurfaceReport& surface : report.surfaces) {
-    AddSurface(report.frame, surface);
+    any_refound = AddSurface(report.frame, surface) || any_refound;
   }
+  if (any_refound) ++refound_frames_;
 }
 
-void SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
+bool SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   if (report.state == "dropped") {  // It begins anew, under the same id.
     surfaces_.erase(report.id);
-    return;
+    last_states_.erase(report.id);
+    return false;
   }
   const auto [found, is_new] = surfaces_.try_emplace(report.id);
   SurfaceSummary& surface = found->second;
@@ -78,11 +135,19 @@ void SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   if (report.state == "tracked" || report.state == "born") ++surface.frames;
   if (report.state == "lost") surface.lost.push_back(frame);
   if (report.state == "hidden") surface.hidden.push_back(frame);
+  const std::string before = last_states_[report.id];
+  last_states_[report.id] = report.state;
+  const bool refound = report.state == "tracked" && IsAway(before);
+  if (refound) surface.refound.push_back(frame);
+  const bool gone = report.state == "lost" || report.state == "hidden";
+  if (gone && surface.away_since < 0) surface.away_since = frame;
+  if (report.state == "tracked") surface.away_since = -1;
   if (report.nodes > 0) {
     surface.nodes = report.nodes;
     surface.node_spacing = report.node_spacing;
   }
   if (report.vertices > 0) surface.vertices = report.vertices;
+  return refound;
 }
 
 void SummaryBuilder::SetSurfaceSize(int id, int nodes, int vertices) {
@@ -96,6 +161,8 @@ RunSummary SummaryBuilder::Build() const {
   RunSummary summary;
   summary.frames = static_cast<int>(seconds_.size());
   summary.lost_frames = lost_frames_;
+  summary.occluded_frames = occluded_frames_;
+  summary.refound_frames = refound_frames_;
   const double count = std::max(1, summary.frames);
   summary.median_seconds = Median(seconds_);
   summary.mean_seconds =

@@ -25,15 +25,33 @@ struct SurfaceSummary {
   int vertices = 0;         ///< Of the final mesh.
   std::vector<int> lost;    ///< Frames whose solve failed.
   std::vector<int> hidden;  ///< Frames in which others mostly hid it.
+  /// Frames in which it was tracked again after it had been lost, hidden or out
+  /// of view.
+  std::vector<int> refound;
+  /// The frame in which it was lost or hidden and after which it was not
+  /// tracked again to the end of the run; -1 = it was.
+  int away_since = -1;
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(id, label, kind, first_frame, frames, nodes, node_spacing,
+               vertices, lost, hidden, refound, away_since);
+  }
 };
 
 /// What `summary.json` holds.
 struct RunSummary {
   bool complete = true;  ///< False if the run ended before the sequence did.
+  std::string status = "complete";  ///< ToString(RunStatus).
+  std::string error;                ///< Of a failed run, one line.
+  std::vector<int> resumed_at;      ///< Frames from which the run went on.
   std::string preset;    ///< Name of the preset.
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.
   int lost_frames = 0;        ///< Frames in which any surface was lost.
+  int occluded_frames = 0;    ///< Frames in which any surface was hidden.
+  int refound_frames = 0;     ///< Frames in which any surface was found again.
   double median_seconds = 0;  ///< Per frame, without writing.
   double mean_seconds = 0;    ///< Per frame, without writing.
   /// Mean seconds per frame of each part, in the order of kFrameParts.
@@ -42,6 +60,10 @@ struct RunSummary {
   std::int64_t peak_memory_bytes = 0;    ///< Largest resident size.
   std::vector<SurfaceSummary> surfaces;  ///< By id.
 };
+
+/// One line that says whether everything was followed: frames, surfaces, and
+/// those that were lost, occluded and found again or not.
+std::string VerdictLine(const RunSummary& summary);
 
 /// Text of `summary.json` as a value; keys in docs/report_format.md.
 nlohmann::ordered_json ToJson(const RunSummary& summary);
@@ -60,10 +82,22 @@ class SummaryBuilder {
   /// are left to the caller.
   RunSummary Build() const;
 
+  /// Saves or restores the statistics so far, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    archive->Section("summary");
+    (*archive)(lost_frames_, occluded_frames_, refound_frames_, last_states_,
+               seconds_, part_sums_, surfaces_);
+  }
+
  private:
-  void AddSurface(int frame, const SurfaceReport& report);
+  /// Returns whether the surface was found again.
+  bool AddSurface(int frame, const SurfaceReport& report);
 
   int lost_frames_ = 0;
+  int occluded_frames_ = 0;
+  int refound_frames_ = 0;
+  std::map<int, std::string> last_states_;  // By surface.
   std::vector<double> seconds_;
   std::array<double, kFrameParts.size()> part_sums_{};
   std::map<int, SurfaceSummary> surfaces_;

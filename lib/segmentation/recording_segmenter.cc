@@ -14,7 +14,8 @@ std::vector<InstanceMask> RecordingSegmenter::Segment(const Frame& frame) {
     writer_ = std::make_unique<MaskFolderWriter>(folder_, settings_);
   }
   const std::vector<InstanceMask> instances = source_->Segment(frame);
-  writer_->Write(frame, instances);
+  // A run that goes on from a checkpoint comes by frames that are there.
+  if (!writer_->Has(frame.stem)) writer_->Write(frame, instances);
   return instances;
 }
 

@@ -13,6 +13,12 @@ namespace splitfusion {
 struct TimedPose {
   double timestamp = 0;                             ///< Seconds.
   Rigid3d world_from_camera = Rigid3d::Identity();  ///< Metres.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(timestamp, world_from_camera);
+  }
 };
 
 /// Poses in order of time stamps.

@@ -53,6 +53,12 @@ class TumReader : public SequenceReader {
   /// The same of the colour file.
   std::string ColorStem(int i) const;
 
+  /// Files and time stamps of the frames that are read.
+  const std::vector<AssociatedFiles>& pairs() const { return pairs_; }
+
+  /// Next() goes on with the i-th frame that is read, 0..size().
+  void SkipTo(int i) { next_ = i; }
+
   /// Intrinsics and depth scale in use.
   const Calibration& calibration() const { return calibration_; }
 

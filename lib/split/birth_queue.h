@@ -20,10 +20,21 @@ class BirthQueue {
   /// Forgets what was last seen where `mask` is: it became a surface.
   void Remove(const cv::Mat_<uchar>& mask);
 
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(entries_);
+  }
+
  private:
   struct Entry {
     cv::Mat_<uchar> mask;     // When last seen.
     std::vector<int> frames;  // Ascending.
+
+    template <typename Archive>
+    void Serialize(Archive* archive) {
+      (*archive)(mask, frames);
+    }
   };
 
   void Forget(int frame);

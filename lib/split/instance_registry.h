@@ -23,12 +23,25 @@ struct TrackedInstance {
   /// Surface that holds it, so that its pixels belong to Whole() meanwhile;
   /// 0 = none.
   int held_by = 0;
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(id, class_name, kind, first_frame, last_detected_frame, dormant,
+               merged_into, held_by);
+  }
 };
 
 /// Looks of an instance, by which it is known when it comes back.
 struct Appearance {
   cv::Mat histogram;  ///< 8x8x8 BGR, sum 1; empty if never seen.
   cv::Vec3f center;   ///< Mean point, camera frame, metres.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(histogram, center);
+  }
 };
 
 /// Appearance of the pixels inside of `mask` (HxW, 255 inside).
@@ -99,6 +112,13 @@ class InstanceRegistry {
   const TrackedInstance& at(int id) const { return instances_.at(id); }
   /// Every instance ever born, by id.
   const std::map<int, TrackedInstance>& instances() const { return instances_; }
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(instances_, votes_, appearances_, covered_, last_holder_,
+               apart_);
+  }
 
  private:
   std::map<int, TrackedInstance> instances_;

@@ -24,10 +24,21 @@ class MaskSupport {
   void Update(int surface, const cv::Mat_<uchar>& pixels,
               const cv::Mat_<uchar>& mask, const LabelImage& predicted_labels);
 
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(states_);
+  }
+
  private:
   struct State {
     cv::Mat_<uchar> pixels;
     cv::Mat_<float> support;  // 0 outside of the pixels.
+
+    template <typename Archive>
+    void Serialize(Archive* archive) {
+      (*archive)(pixels, support);
+    }
   };
   std::map<int, State> states_;
 };

@@ -42,6 +42,12 @@ class MovingObjects {
   cv::Mat_<uchar> Watch(const MotionView& view, const LabelTable& table,
                         std::vector<Candidate>* candidates);
 
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(space_, moved_);
+  }
+
  private:
   bool IsWatched(const Candidate& candidate, const LabelTable& table) const;
 

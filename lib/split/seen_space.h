@@ -28,11 +28,22 @@ class SeenSpace {
   cv::Mat_<uchar> WasEmpty(const cv::Mat_<uchar>& mask, const PointMap& points,
                            const Rigid3d& world_from_camera) const;
 
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(views_);
+  }
+
  private:
   struct View {
-    int frame;
+    int frame = 0;
     cv::Mat_<float> depth;  // Least depth around a pixel; 0 = not all measured.
     Rigid3f camera_from_world;
+
+    template <typename Archive>
+    void Serialize(Archive* archive) {
+      (*archive)(frame, depth, camera_from_world);
+    }
   };
 
   void Thin();

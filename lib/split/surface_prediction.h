@@ -23,6 +23,12 @@ struct SurfacePrediction {
   cv::Mat_<float> background;
   /// Predicted pose of the camera of this frame.
   Rigid3d world_from_camera = Rigid3d::Identity();
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(labels, depth, background, world_from_camera);
+  }
 };
 
 /// The prediction in which labels and live depth of the frame before, `last`,

@@ -341,7 +341,8 @@ void SurfaceSplitter::Remember(const SplitWork& work) {
         ComputeAppearance(work.frame.color, work.points, pixels));
     support_.Update(segment.surface, pixels, segment.mask, work.prior.labels);
   }
-  last_ = {work.labels.clone(), work.frame.depth.clone(), {}, {}};
+  last_ = {
+      work.labels.clone(), work.frame.depth.clone(), {}, Rigid3d::Identity()};
   last_.depth.setTo(0, work.result.uncertain);
 }
 

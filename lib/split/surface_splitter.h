@@ -45,6 +45,14 @@ class SurfaceSplitter {
     return registry_.instances();
   }
 
+  /// Saves or restores all that later frames depend on, see
+  /// lib/base/archive.h; of a splitter with the same camera and options.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    archive->Section("splitter");
+    (*archive)(registry_, births_, objects_, support_, last_, frames_);
+  }
+
  private:
   void CheckSizes(const Frame& frame,
                   const std::vector<InstanceMask>& detections,

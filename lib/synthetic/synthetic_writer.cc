@@ -1,7 +1,6 @@
 #include "splitfusion/lib/synthetic/synthetic_writer.h"
 
 #include <tbb/parallel_invoke.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <iomanip>
@@ -11,6 +10,7 @@
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/pending_folder.h"
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/synthetic/ground_truth_writer.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
@@ -20,83 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDepthFactor = 5000;  // Units per metre of depth images.
-
-/// A folder that appears under its final name only when it is complete.
-class PendingFolder {
- public:
-  /// @throw InputError if the target is in the way or cannot be made.
-  PendingFolder(const std::string& directory, bool overwrite)
-      : target_(AbsolutePath(directory)) {
-    if (!target_.has_filename()) target_ = target_.parent_path();
-    CheckTarget(overwrite);
-    temporary_ = Sibling(".tmp");
-    std::error_code error;
-    fs::create_directories(temporary_, error);
-    if (error) Fail(error);
-  }
-
-  ~PendingFolder() {
-    std::error_code ignored;
-    if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  }
-
-  PendingFolder(const PendingFolder&) = delete;
-  PendingFolder& operator=(const PendingFolder&) = delete;
-
-  const fs::path& path() const { return temporary_; }
-
-  /// Puts the folder in place of what was there.
-  void Commit() {
-    std::error_code error;
-    const fs::path old = Sibling(".old");
-    const bool replaces = fs::exists(target_);
-    if (replaces) fs::rename(target_, old, error);
-    if (!error) fs::rename(temporary_, target_, error);
-    if (error) Fail(error);
-    temporary_.clear();
-    if (replaces) fs::remove_all(old, error);
-  }
-
- private:
-  static fs::path AbsolutePath(const std::string& directory) {
-    if (directory.empty()) {
-      throw InputError("directory = '': expected the folder to write");
-    }
-    return fs::absolute(directory).lexically_normal();
-  }
-
-  fs::path Sibling(const std::string& suffix) const {
-    return target_.parent_path() / ("." + target_.filename().string() + suffix +
-                                    std::to_string(getpid()));
-  }
-
-  void CheckTarget(bool overwrite) const {
-    if (!fs::exists(target_)) return;
-    if (!fs::is_directory(target_)) {
-      throw InputError(target_.string() + ": is a file, expected a folder");
-    }
-    if (fs::is_empty(target_)) return;
-    if (!overwrite) {
-      throw InputError(target_.string() +
-                       ": exists and is not empty; expected a new folder, or "
-                       "the option to overwrite");
-    }
-    if (!fs::exists(target_ / "associations.txt")) {
-      throw InputError(target_.string() +
-                       ": not overwritten, since it is not a sequence (no "
-                       "associations.txt)");
-    }
-  }
-
-  [[noreturn]] void Fail(const std::error_code& error) const {
-    throw InputError(target_.string() + ": cannot be written (" +
-                     error.message() + ")");
-  }
-
-  fs::path target_;
-  fs::path temporary_;
-};
+constexpr double kDepthFactor = 5000;    // Units per metre of depth images.
+constexpr char kProgram[] = "sf_synth";  // Of the marker.
 
 void WriteImage(const fs::path& path, const cv::Mat& image) {
   bool written = false;
@@ -203,13 +128,13 @@ void SyntheticWriterOptions::Check() const {
   CheckOption(seen_every >= 1, "seen_every", seen_every, "1 or more frames");
 }
 
-void WriteSyntheticSequence(const SyntheticOptions& options,
-                            const SyntheticWriterOptions& writer_options,
-                            const std::string& directory,
-                            const std::function<void(int)>& progress) {
+std::vector<std::string> WriteSyntheticSequence(
+    const SyntheticOptions& options,
+    const SyntheticWriterOptions& writer_options, const std::string& directory,
+    const std::function<void(int)>& progress) {
   writer_options.Check();
   options.Check();
-  PendingFolder folder(directory, writer_options.overwrite);
+  PendingFolder folder(directory, kProgram, writer_options.overwrite);
   const SyntheticScene scene(options);
   const SequenceFolder sequence(folder.path(), scene);
   GroundTruthWriter truth((folder.path() / "gt").string(), scene,
@@ -224,7 +149,7 @@ void WriteSyntheticSequence(const SyntheticOptions& options,
   truth.Finish();
   fs::copy_file(folder.path() / "gt" / "groundtruth.txt",
                 folder.path() / "groundtruth.txt");
-  folder.Commit();
+  return folder.Commit();
 }
 
 }  // namespace splitfusion

@@ -85,6 +85,13 @@ class TsdfVolume {
   /// @throw InputError on a missing, truncated or foreign file.
   static TsdfVolume Read(const std::string& path);
 
+  /// Saves or restores all voxels and what fusion knows of their blocks, bit
+  /// for bit, see lib/base/archive.h.
+  ///
+  /// @throw InputError if what is read has other voxels than options().
+  template <typename Archive>
+  void Serialize(Archive* archive);
+
  private:
   TsdfOptions options_;
   std::unique_ptr<Grids> grids_;

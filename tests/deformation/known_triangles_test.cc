@@ -97,11 +97,18 @@ TEST_F(KnownTrianglesTest, AreNotThoseOfAPartOutOfSight) {
   }
   const auto skinning = SkinningIndex(graph, 6).Skin(strip.vertices);
   EXPECT_EQ(KnownTriangles(strip, skinning, graph, 5), strip.triangles);
+  EXPECT_EQ(SeenTriangles(strip, skinning, graph, 60), strip.triangles);
   const auto known = KnownTriangles(strip, skinning, graph, 60);
   EXPECT_GT(known.size(), 0.2 * strip.triangles.size());
   EXPECT_LT(known.size(), 0.7 * strip.triangles.size());
   for (const Eigen::Vector3i& t : known) {
     EXPECT_LT(strip.vertices[t[0]].x(), 1.2);
+  }
+}
+
+TEST_F(KnownTrianglesTest, AreThoseThatWereSeenIfNothingWasLostFromSight) {
+  for (const int frame : {0, 2, 5, 8}) {
+    EXPECT_EQ(SeenTriangles(mesh_, skinning_, graph_, frame), KnownIn(frame));
   }
 }
 

@@ -1,15 +1,18 @@
 #include "splitfusion/lib/deformation/motion_history.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
+#include "support/expect_input_error.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
 namespace {
-
-using ::testing::HasSubstr;
 
 NodeMotion Motion(double value) {
   NodeMotion motion;
@@ -23,24 +26,6 @@ MotionHistory TwoFrames() {
   history.frames.push_back({3, true, {Motion(0.1), Motion(0.2)}});
   history.frames.push_back({5, false, {Motion(0.3), Motion(0.4)}});
   return history;
-}
-
-DeformationGraph Triangle() {
-  DeformationGraph graph;
-  graph.node_spacing = 0.025;
-  graph.positions = {{0.1, 0.2, 1.0 / 3}, {1, 2, 3}, {-1e-9, 0, 7}};
-  graph.neighbors = {{1, 2}, {0}, {}};
-  graph.motions.resize(3);
-  return graph;
-}
-
-std::string GraphMessage(const std::string& path) {
-  try {
-    ReadGraph(path, nullptr);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing thrown";
 }
 
 TEST(MotionHistory, FindsFrames) {
@@ -70,8 +55,11 @@ TEST(Motions, HaveTheDocumentedLayout) {
   const TemporaryFolder folder;
   WriteMotions(folder / "motions.bin", TwoFrames());
   const std::string bytes = folder.Read("motions.bin");
-  EXPECT_EQ(bytes.size(), 8 + 8 + 2 * (8 + 2 * 48));
-  EXPECT_EQ(bytes.substr(0, 8), "SFMOTN01");
+  ASSERT_EQ(bytes.size(), 8 + 8 + 2 * (8 + 2 * 48) + 8);
+  EXPECT_EQ(bytes.substr(0, 8), "SFMOTN02");
+  std::uint64_t checksum = 0;
+  bytes.copy(reinterpret_cast<char*>(&checksum), 8, bytes.size() - 8);
+  EXPECT_EQ(checksum, Checksum64(bytes.data(), bytes.size() - 8));
   float translation_y = 0;
   bytes.copy(reinterpret_cast<char*>(&translation_y), 4, 24 + 10 * 4);
   EXPECT_EQ(translation_y, 2);
@@ -96,96 +84,66 @@ TEST(Motions, RejectTruncatedAndForeignFiles) {
   EXPECT_THROW(ReadMotions(folder / "none.bin"), InputError);
 }
 
-TEST(Graph, RoundTripIsExact) {
+TEST(Motions, EveryChangedByteIsNoticed) {
   const TemporaryFolder folder;
-  WriteGraph(folder / "graph.json", Triangle(), 4);
-  int neighbors_per_point = 0;
-  const DeformationGraph read =
-      ReadGraph(folder / "graph.json", &neighbors_per_point);
-  EXPECT_EQ(neighbors_per_point, 4);
-  EXPECT_EQ(read.positions, Triangle().positions);
-  EXPECT_EQ(read.neighbors, Triangle().neighbors);
-  EXPECT_EQ(read.node_spacing, 0.025);
-  EXPECT_TRUE(read.first_seen.empty());
-  ASSERT_EQ(read.motions.size(), 3u);
-  EXPECT_TRUE(read.motions[2].rotation.isIdentity());
-}
-
-TEST(Graph, KeepsFirstSights) {
-  const TemporaryFolder folder;
-  DeformationGraph graph = Triangle();
-  graph.first_seen = {2, 2, 5};
-  graph.sightings = {{{2, 4}}, {{2, 2}, {6, 9}}, {{5, 5}}};
-  WriteGraph(folder / "graph.json", graph, 4);
-  const DeformationGraph read = ReadGraph(folder / "graph.json", nullptr);
-  EXPECT_EQ(read.first_seen, graph.first_seen);
-  ASSERT_EQ(read.sightings.size(), 3u);
-  ASSERT_EQ(read.sightings[1].size(), 2u);
-  EXPECT_EQ(read.sightings[0][0].first, 2);
-  EXPECT_EQ(read.sightings[0][0].last, 4);
-  EXPECT_EQ(read.sightings[1][1].first, 6);
-  EXPECT_EQ(read.sightings[1][1].last, 9);
-}
-
-TEST(Graph, MayLackFirstSights) {
-  const TemporaryFolder folder;
-  folder.Write("graph.json", R"({"node_spacing": 1, "positions": [[1, 2, 3]],
-                                 "edges": [[]]})");
-  EXPECT_TRUE(ReadGraph(folder / "graph.json", nullptr).first_seen.empty());
-}
-
-TEST(Graph, SightingsAreRunsOfFrames) {
-  const TemporaryFolder folder;
-  const std::string path = folder / "graph.json";
-  const std::string head =
-      R"({"node_spacing": 1, "positions": [[1, 2, 3]], "edges": [[]], )";
-  folder.Write("graph.json", head + R"("sightings": [[3, 4], [5, 6]]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("'sightings' has 2 entries"));
-  for (const char* wrong :
-       {"3", "null", "[]", "[3]", "[4, 3]", "[3, 4, 4]", "[5, 6, 1, 2]",
-        "[-1, 2]", "[1, null]", "\"3\"", R"({"a": 1, "b": 2})"}) {
-    folder.Write("graph.json",
-                 head + R"("sightings": [)" + std::string(wrong) + "]}");
-    EXPECT_THAT(GraphMessage(path), HasSubstr("field 'sightings'")) << wrong;
+  WriteMotions(folder / "motions.bin", TwoFrames());
+  const std::string bytes = folder.Read("motions.bin");
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    for (const int change : {0x01, 0x03, 0x80, 0xff}) {
+      std::string damaged = bytes;
+      damaged[at] = static_cast<char>(damaged[at] ^ change);
+      folder.Write("damaged.bin", damaged);
+      EXPECT_THROW(ReadMotions(folder / "damaged.bin"), InputError)
+          << "byte " << at;
+    }
   }
-  folder.Write("graph.json", head + R"("sightings": 7})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("expected an array"));
 }
 
-TEST(Graph, NamesTheBadField) {
+/// The same file as version 01 had it: without a checksum.
+std::string FirstVersion(std::string bytes) {
+  bytes.resize(bytes.size() - 8);
+  bytes[7] = '1';
+  return bytes;
+}
+
+TEST(Motions, OfTheFirstVersionAreRead) {
   const TemporaryFolder folder;
-  const std::string path = folder / "graph.json";
-  EXPECT_THAT(GraphMessage(path), HasSubstr("cannot be opened"));
-  folder.Write("graph.json", "[1, 2");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("expected a JSON object"));
-  folder.Write("graph.json", R"({"node_spacing": "wide"})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'node_spacing'"));
-  folder.Write("graph.json", R"({"node_spacing": 1, "positions": [[1, 2]]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'positions'"));
-  const std::string head = R"({"node_spacing": 1, "positions": [[1, 2, 3]], )";
-  folder.Write("graph.json", head + R"("edges": [[], []]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("'edges' has 2 entries"));
-  folder.Write("graph.json", head + R"("edges": [[1]]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("names node 1: expected 0..0"));
-  folder.Write("graph.json", head + R"("edges": [[]], "first_seen": [1, 2]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("'first_seen' has 2 entries"));
-  for (const char* wrong : {"\"early\"", "-1", "2.7", "true", "null", "1e20",
-                            "2147483648", "4294967299"}) {
-    folder.Write("graph.json",
-                 head + R"("edges": [[]], "first_seen": [)" + wrong + "]}");
-    EXPECT_THAT(GraphMessage(path), HasSubstr("field 'first_seen'")) << wrong;
-  }
-  folder.Write("graph.json",
-               R"({"node_spacing": 1, "positions": [[1, 2, 1e39]],
-                   "edges": [[]]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'positions'"));
-  folder.Write("graph.json",
-               R"({"node_spacing": -1, "positions": [[1, 2, 3]],
-                   "edges": [[]]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'node_spacing'"));
-  folder.Write("graph.json", head + R"("edges": [[]]})");
-  int neighbors = 0;
-  EXPECT_THROW(ReadGraph(path, &neighbors), InputError);
+  WriteMotions(folder / "motions.bin", TwoFrames());
+  folder.Write("old.bin", FirstVersion(folder.Read("motions.bin")));
+  const MotionHistory read = ReadMotions(folder / "old.bin");
+  ASSERT_EQ(read.frames.size(), 2u);
+  EXPECT_TRUE(
+      read.frames[1].motions[1].rotation.isApprox(Motion(0.4).rotation, 1e-6));
+}
+
+TEST(Motions, ThatCannotBeAreRefused) {
+  const TemporaryFolder folder;
+  const auto refuses = [&](const MotionHistory& history,
+                           const std::string& part) {
+    WriteMotions(folder / "motions.bin", history);
+    ExpectInputError([&] { ReadMotions(folder / "motions.bin"); }, part);
+    folder.Write("old.bin", FirstVersion(folder.Read("motions.bin")));
+    ExpectInputError([&] { ReadMotions(folder / "old.bin"); }, part);
+  };
+  MotionHistory history = TwoFrames();
+  history.frames[1].motions[1].translation.y() = std::nan("");
+  refuses(history, "frame 5, node 1: its motion is no rotation and translat");
+  history = TwoFrames();
+  history.frames[0].motions[0].rotation(1, 1) += 0.1;
+  refuses(history, "frame 3, node 0: its motion is no rotation");
+  history = TwoFrames();
+  history.frames[0].motions[0].rotation *= -1;
+  refuses(history, "frame 3, node 0: its motion is no rotation");
+  history = TwoFrames();
+  std::swap(history.frames[0], history.frames[1]);
+  refuses(history, "frame 3: expected frames in ascending order");
+}
+
+TEST(Motions, OfMoreFramesThanTheFileHoldsAreNotAllocated) {
+  const TemporaryFolder folder;
+  folder.Write("huge.bin", "SFMOTN02" + std::string(8, '\xff'));
+  ExpectInputError([&] { ReadMotions(folder / "huge.bin"); },
+                   "huge.bin: 16 bytes: expected ");
 }
 
 }  // namespace

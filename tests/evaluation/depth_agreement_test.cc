@@ -33,7 +33,7 @@ class DepthAgreementTest : public ::testing::Test {
     RecordedRun run = ReadRun(folder_ / "run");
     if (spoil) spoil(&run);
     const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
-    return CompareDepth(run, surfaces, every);
+    return CompareDepth(run, surfaces, every, plain_view_pixels_);
   }
 
   void ExpectRefused(const std::string& message) const {
@@ -41,6 +41,7 @@ class DepthAgreementTest : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  int plain_view_pixels_ = 8000;
 };
 
 /// Moves the plate towards the camera of frame 0.
@@ -114,6 +115,19 @@ TEST_F(DepthAgreementTest, FramesInWhichASurfaceWasNotTrackedDoNotCount) {
   EXPECT_EQ(surfaces[0].frames, 3);
   EXPECT_EQ(surfaces[1].frames, 1);
   EXPECT_GT(surfaces[1].distances.median, 0.25);
+}
+
+TEST_F(DepthAgreementTest, SurfaceInPlainViewThatWasNotTrackedIsUncovered) {
+  plain_view_pixels_ = 1000;
+  const auto lost_but_once = [](RecordedRun* run) {
+    for (FrameMotions& frame : run->surfaces[1].motions.frames) {
+      frame.tracked = frame.frame == 5;
+    }
+  };
+  const auto surfaces = Compare(lost_but_once, 5);
+  EXPECT_EQ(surfaces[1].frames, 1);
+  EXPECT_EQ(surfaces[1].frames_missing, 2);
+  EXPECT_NEAR(surfaces[1].UncoveredFraction(), 2. / 3, 0.02);
 }
 
 TEST_F(DepthAgreementTest, DepthOutOfTheRangeOfTheRunDoesNotCount) {

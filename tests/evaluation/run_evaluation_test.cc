@@ -55,8 +55,8 @@ void SortByX(RecordedSurface* surface) {
 class RunEvaluationTest : public ::testing::Test {
  protected:
   RunEvaluationTest() {
-    options_.track_frame = 0;
-    options_.track_frames = 10;
+    options_.tracks.references = {0};
+    options_.tracks.frames = 10;
     options_.surface.samples = 5000;
     std::filesystem::create_directories(folder_ / "run");
     plate_.WriteRun(folder_ / "run");
@@ -193,8 +193,100 @@ TEST_F(RunEvaluationTest, TracksFollowTheBendingPlate) {
   EXPECT_EQ(errors.instances.at(1).visible.count, 250);
 }
 
+TEST_F(RunEvaluationTest, WhoIsNotShownIsMissingAndNotAbsent) {
+  options_.presence.plain_view_pixels = 1000;
+  RecordedRun run = ReadRun(folder_ / "run");
+  for (FrameMotions& frame : run.surfaces[1].motions.frames) {
+    if (frame.frame < 4) continue;
+    frame.tracked = false;  // Left out, if it were not in plain view.
+    for (NodeMotion& motion : frame.motions) motion.translation.x() += 0.6;
+  }
+  const RunEvaluation evaluation =
+      EvaluateRun(run, AnimateSurfaces(run.surfaces),
+                  ReadGroundTruth(folder_ / "sequence"), options_);
+  const InstanceError& plate = evaluation.instances[0];
+  ASSERT_TRUE(plate.presence);
+  EXPECT_EQ(plate.presence->surface_id, 1);
+  EXPECT_EQ(plate.presence->in_view, (std::vector<int>{0, 6}));
+  EXPECT_EQ(plate.presence->missing, std::vector<int>{6});
+  const InstanceFrameError& lost = plate.frames[1];
+  EXPECT_TRUE(lost.missing && lost.matched);
+  EXPECT_EQ(lost.surface.f_score[2], 0);
+  EXPECT_EQ(lost.surface.accuracy.statistics.mean, 0.3);
+  EXPECT_EQ(lost.view.uncovered, lost.view.pixels);
+  const auto json = ToJson(evaluation);
+  const auto& instance = json.at("instances")[0];
+  EXPECT_EQ(instance.at("presence").at("share"), 0.5);
+  EXPECT_EQ(instance.at("surface_frames"), 2);
+  EXPECT_EQ(instance.at("surface_frames_missing"), 1);
+  EXPECT_NEAR(instance.at("surface").at("f_score").at("0.02"), 0.5, 0.01);
+  EXPECT_NEAR(instance.at("surface").at("f_score_seen"), 0.5, 0.01);
+  EXPECT_NEAR(json.at("headline").at("surface_error_m"), 0.15, 0.001);
+  EXPECT_NEAR(json.at("headline").at("missing"), 0.5, 0.05);
+  EXPECT_LT(instance.at("surface_where_shown")
+                .at("accuracy")
+                .at("mean")
+                .get<double>(),
+            0.001);
+}
+
+TEST_F(RunEvaluationTest, APerfectModelHasAllThatWasSeen) {
+  options_.presence.plain_view_pixels = 1000;
+  const InstanceError plate = Evaluate().instances[0];
+  ASSERT_TRUE(plate.seen);
+  EXPECT_EQ(plate.seen->surface_id, 1);
+  EXPECT_EQ(plate.seen->frames.size(), 2u);
+  EXPECT_GT(plate.seen->Mean().f_score, 0.99);
+  EXPECT_TRUE(plate.presence->missing.empty());
+  ASSERT_TRUE(plate.shape);
+  EXPECT_EQ(plate.shape->frames, 12);
+  EXPECT_EQ(plate.shape->stretched.worst, 0);
+  EXPECT_LT(plate.shape->stray->worst, 0.01);
+}
+
+TEST_F(RunEvaluationTest, AModelBehindTheLiveDepthIsStray) {
+  RecordedRun run = ReadRun(folder_ / "run");
+  for (NodeMotion& motion : run.surfaces[1].motions.frames[5].motions) {
+    motion.translation.z() += 0.05;
+  }
+  const auto shapes =
+      EvaluateRun(run, AnimateSurfaces(run.surfaces), std::nullopt, options_)
+          .shapes;
+  ASSERT_EQ(shapes.size(), 1u);
+  EXPECT_GT(shapes[0].stray->worst, 0.9);
+  EXPECT_EQ(shapes[0].stray->worst_frame, 5);
+  EXPECT_NEAR(shapes[0].stray->mean, shapes[0].stray->worst / 12, 0.01);
+}
+
+TEST_F(RunEvaluationTest, AShortRunIsFollowedThroughHalfOfItsFrames) {
+  options_.tracks.references.clear();
+  options_.tracks.frames = 30;
+  const RunEvaluation evaluation = Evaluate();
+  ASSERT_TRUE(evaluation.tracks);
+  EXPECT_EQ(evaluation.tracks->errors.reference_frame, 0);
+  EXPECT_EQ(evaluation.tracks->errors.frames, 5);  // Of 0 to 11.
+}
+
+TEST_F(RunEvaluationTest, SeveralReferenceFramesGiveTheirMean) {
+  options_.tracks.references = {0, 4, 50};
+  const RunEvaluation evaluation = Evaluate();
+  EXPECT_THAT(evaluation.skipped,
+              Contains("track error: frame 50 is not in the run"));
+  const auto tracks = ToJson(evaluation).at("tracks");
+  EXPECT_TRUE(tracks.at("reference_frame").is_null());
+  const auto& each = tracks.at("by_reference");
+  ASSERT_EQ(each.size(), 2u);
+  EXPECT_EQ(each[1].at("reference_frame"), 4);
+  EXPECT_EQ(each[1].at("frames"), 7);
+  EXPECT_NEAR(tracks.at("visible").at("mean"),
+              (each[0].at("visible").at("mean").get<double>() +
+               each[1].at("visible").at("mean").get<double>()) /
+                  2,
+              1e-12);
+}
+
 TEST_F(RunEvaluationTest, PicksTheFirstOfEquallyGoodTrackFrames) {
-  options_.track_frame = -1;
+  options_.tracks.references.clear();
   EXPECT_EQ(Evaluate().tracks->errors.reference_frame, 0);
 }
 
@@ -213,7 +305,7 @@ TEST_F(RunEvaluationTest, SaysWhatIsSkipped) {
 }
 
 TEST_F(RunEvaluationTest, TracksOfAFrameBeyondTheTruthAreSkipped) {
-  options_.track_frame = 50;
+  options_.tracks.references = {50};
   EXPECT_THAT(Evaluate().skipped,
               Contains("track error: frame 50 is not in the run"));
 }
@@ -227,7 +319,10 @@ TEST_F(RunEvaluationTest, WithoutTruthTheDepthAgreementIsLeft) {
   EXPECT_TRUE(json.at("ground_truth").is_null());
   EXPECT_TRUE(json.at("ate").is_null());
   EXPECT_THAT(FormatTable(evaluation),
-              testing::StartsWith("model - live depth"));
+              testing::AllOf(HasSubstr("model - live depth"),
+                             testing::StartsWith("model area")));
+  EXPECT_EQ(json.at("headline").at("stretched"), 0);
+  EXPECT_TRUE(json.at("headline").at("f_score_seen").is_null());
 }
 
 TEST_F(RunEvaluationTest, WithoutTheSequenceTheTruthIsLeft) {
@@ -237,10 +332,10 @@ TEST_F(RunEvaluationTest, WithoutTheSequenceTheTruthIsLeft) {
     const RunEvaluation evaluation = Evaluate(truth);
     EXPECT_TRUE(evaluation.depth.empty());
     EXPECT_TRUE(evaluation.background);
-    EXPECT_THAT(evaluation.skipped,
-                testing::ElementsAre(
-                    testing::AllOf(testing::StartsWith("depth agreement: "),
-                                   HasSubstr(name + "/stem0.png"))));
+    EXPECT_THAT(
+        evaluation.skipped,
+        Contains(testing::AllOf(testing::StartsWith("depth agreement: "),
+                                HasSubstr(name + "/stem0.png"))));
   }
   options_.depth_every = 0;
   EXPECT_THAT(Evaluate(truth).skipped,
@@ -277,7 +372,13 @@ TEST(EvaluationOptions, RejectsNonsense) {
   options.depth_every = -1;
   EXPECT_THROW(options.Check(), InputError);
   options = {};
-  options.track_frames = 0;
+  options.tracks.frames = 0;
+  EXPECT_THROW(options.Check(), InputError);
+  options = {};
+  options.tracks.references = {-2};
+  EXPECT_THROW(options.Check(), InputError);
+  options = {};
+  options.presence_every = -1;
   EXPECT_THROW(options.Check(), InputError);
   options = {};
   options.surface.samples = 0;

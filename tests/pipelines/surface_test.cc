@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "splitfusion/lib/deformation/graph_file.h"
 #include "splitfusion/pipelines/model_rendering.h"
 #include "splitfusion/pipelines/surface_output.h"
 #include "support/expect_input_error.h"

@@ -50,7 +50,7 @@ TEST(SvgChart, SaysWhenThereIsNothing) {
 
 TEST(HtmlReport, ShowsLostFramesAndLoadsNothing) {
   const TemporaryFolder folder;
-  RunDirectory run(folder / "run", false, {"cofusion", "", {}});
+  RunDirectory run(folder / "run", {"cofusion", "", {}});
   for (int frame = 0; frame < 3; ++frame) {
     FrameReport report = SampleReport(frame);
     report.surfaces[1].label = "a<b>";

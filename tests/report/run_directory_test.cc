@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/report/json_lines.h"
@@ -31,9 +34,15 @@ TEST(RunPaths, NamesSurfacesAndFrames) {
   EXPECT_EQ(RunPaths::SurfaceName(1, "../a"), "001_.._a");
 }
 
+TEST(RunPaths, LongAndOddLabelsGiveNamesThatFileSystemsTake) {
+  const std::string label(300, 'a');
+  EXPECT_EQ(RunPaths::SurfaceName(12, label), "012_" + std::string(60, 'a'));
+  EXPECT_EQ(RunPaths::SurfaceName(1, std::string("\xff\0\n", 3)), "001____");
+}
+
 TEST(RunDirectory, HoldsEveryFrameBeforeTheEnd) {
   const TemporaryFolder folder;
-  RunDirectory run(folder / "run", false, Facts());
+  RunDirectory run(folder / "run", Facts());
   run.AddFrame(SampleReport(0), {100.0, Rigid3d::Identity()});
   run.AddFrame(SampleReport(1), {100.5, Rigid3d::Identity()});
   // The run is still open, as after a crash.
@@ -51,14 +60,14 @@ TEST(RunDirectory, HoldsEveryFrameBeforeTheEnd) {
 
 TEST(RunDirectory, OptionsRepeatTheRunAndStateVersions) {
   const TemporaryFolder folder;
-  const RunDirectory run(folder / "run", false, Facts());
+  const RunDirectory run(folder / "run", Facts());
   EXPECT_EQ(folder.Read("run/options.flags"),
             "# ceres 2.1.0\n--preset=splitfusion\n--threads=2\n");
 }
 
 TEST(RunDirectory, FinishWritesTheSummaryOfTheContract) {
   const TemporaryFolder folder;
-  RunDirectory run(folder / "run", false, Facts());
+  RunDirectory run(folder / "run", Facts());
   run.AddFrame(SampleReport(0), {});
   run.AddWritingSeconds(3);
   run.Finish();
@@ -66,7 +75,7 @@ TEST(RunDirectory, FinishWritesTheSummaryOfTheContract) {
   for (const char* key :
        {"complete", "frames", "lost_frames", "seconds_per_frame",
         "seconds_writing", "peak_memory_bytes", "surfaces", "versions",
-        "preset"}) {
+        "preset", "status", "error", "resumed_at"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   for (const char* key : {"read", "segment", "split", "render", "associate",
@@ -80,7 +89,7 @@ TEST(RunDirectory, FinishWritesTheSummaryOfTheContract) {
 
 TEST(RunDirectory, WritesSolverTextsOnRequest) {
   const TemporaryFolder folder;
-  RunDirectory run(folder / "run", false, Facts());
+  RunDirectory run(folder / "run", Facts());
   FrameReport report = SampleReport(4);
   report.surfaces[1].rounds[0].solver.full_report = "Solver Summary";
   run.AddFrame(report, {});
@@ -88,56 +97,57 @@ TEST(RunDirectory, WritesSolverTextsOnRequest) {
             "== surface 1 (teddy bear), round 0, rigid\nSolver Summary\n");
 }
 
-TEST(RunDirectory, RefusesAFolderWithContent) {
-  const TemporaryFolder folder;
-  folder.Write("run/notes.txt", "mine");
-  try {
-    RunDirectory(folder / "run", false, Facts());
-    FAIL() << "expected InputError";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("is not empty"),
-              std::string::npos);
-  }
-  folder.Write("file", "");
-  EXPECT_THROW(RunDirectory(folder / "file", false, Facts()), InputError);
-}
-
-TEST(RunDirectory, OverwriteClearsTheOldRunAndNothingElse) {
-  const TemporaryFolder folder;
-  folder.Write("run/notes.txt", "mine");
-  folder.Write("run/options.flags", "");
-  folder.Write("run/summary.json", "{}");
-  folder.Write("run/surfaces/001_person/mesh.ply", "ply");
-  const RunDirectory run(folder / "run", true, Facts());
-  EXPECT_EQ(folder.Read("run/notes.txt"), "mine");
-  EXPECT_FALSE(folder.Has("run/summary.json"));
-  EXPECT_FALSE(folder.Has("run/surfaces"));
-}
-
-TEST(RunDirectory, OverwriteDeletesNothingThatNoRunWrote) {
-  const TemporaryFolder folder;
-  folder.Write("home/pictures/me.jpg", "precious");
-  ExpectInputError([&] { RunDirectory(folder / "home", true, Facts()); },
-                   "home/pictures: is not of a run");
-  EXPECT_TRUE(folder.Has("home/pictures/me.jpg"));
-}
-
 TEST(RunDirectory, TheSummarySaysWhetherTheRunIsComplete) {
   const TemporaryFolder folder;
   const RunPaths paths(folder / "run");
   EXPECT_FALSE(IsComplete(paths));
-  const RunDirectory run(folder / "run", false, Facts());
+  const RunDirectory run(folder / "run", Facts());
   EXPECT_FALSE(IsComplete(paths));
-  run.Finish(/*complete=*/false);
+  run.Finish({RunStatus::kIncomplete, "", {}});
   EXPECT_FALSE(IsComplete(paths));
   run.Finish();
   EXPECT_TRUE(IsComplete(paths));
 }
 
-TEST(RunDirectory, LogFilesDoNotCountAsContent) {
+TEST(RunDirectory, GoesOnFromItsState) {
   const TemporaryFolder folder;
-  folder.Write("run/run.log", "");
-  EXPECT_NO_THROW(RunDirectory(folder / "run", false, Facts()));
+  std::stringstream state;
+  RunDirectory whole(folder / "whole", Facts());
+  RunDirectory killed(folder / "killed", Facts());
+  for (int frame = 0; frame < 4; ++frame) {
+    whole.AddFrame(SampleReport(frame), {100.0 + frame, Rigid3d::Identity()});
+    if (frame == 3) continue;
+    killed.AddFrame(SampleReport(frame), {100.0 + frame, Rigid3d::Identity()});
+    if (frame != 1) continue;
+    ArchiveWriter writer(&state);
+    writer(killed);
+    writer.Flush();
+  }
+  RunDirectory resumed(folder / "killed", Facts(), /*goes_on=*/true);
+  ArchiveReader reader(&state, state.str().size(), "state");
+  reader(resumed);
+  for (int frame = 2; frame < 4; ++frame) {
+    resumed.AddFrame(SampleReport(frame), {100.0 + frame, Rigid3d::Identity()});
+  }
+  for (const std::string file :
+       {"frames.jsonl", "iterations.csv", "trajectory.txt"}) {
+    EXPECT_EQ(folder.Read("killed/" + file), folder.Read("whole/" + file));
+  }
+  EXPECT_EQ(resumed.Summary().frames, 4);
+}
+
+TEST(RunDirectory, DoesNotGoOnWithStreamsThatWereCut) {
+  const TemporaryFolder folder;
+  RunDirectory run(folder / "run", Facts());
+  run.AddFrame(SampleReport(0), {});
+  std::stringstream state;
+  ArchiveWriter writer(&state);
+  writer(run);
+  writer.Flush();
+  std::filesystem::resize_file(folder / "run/frames.jsonl", 10);
+  RunDirectory resumed(folder / "run", Facts(), /*goes_on=*/true);
+  ArchiveReader reader(&state, state.str().size(), "state");
+  ExpectInputError([&] { reader(resumed); }, "frames.jsonl");
 }
 
 TEST(ReadJsonLines, LeavesOutACutLineAndNamesABrokenOne) {
@@ -164,7 +174,7 @@ TEST(LibraryVersions, NamesTheLibrariesThatDecideTheResult) {
 
 TEST(RunDirectory, TrajectoryStreamIsTheFileWrittenAtOnce) {
   const TemporaryFolder folder;
-  RunDirectory run(folder / "run", false, Facts());
+  RunDirectory run(folder / "run", Facts());
   Trajectory poses(2);
   poses[1].timestamp = 0.5;
   poses[1].world_from_camera.linear() = ExpSo3({0.1, -0.2, 0.3});
@@ -176,7 +186,7 @@ TEST(RunDirectory, TrajectoryStreamIsTheFileWrittenAtOnce) {
 
 TEST(RunDirectory, NamesTheFileThatCannotBeWritten) {
   const TemporaryFolder folder;
-  RunDirectory run(folder / "run", false, Facts());
+  RunDirectory run(folder / "run", Facts());
   folder.Write("run/solver", "a file where a folder should be");
   FrameReport report = SampleReport(0);
   report.surfaces[0].rounds[0].solver.full_report = "text";
@@ -187,12 +197,6 @@ TEST(RunDirectory, NamesTheFileThatCannotBeWritten) {
     EXPECT_NE(std::string(error.what()).find("solver/000000.txt"),
               std::string::npos);
   }
-}
-
-TEST(ClearRun, ToleratesAMissingFolder) {
-  const TemporaryFolder folder;
-  EXPECT_NO_THROW(ClearRun(RunPaths(folder / "none")));
-  EXPECT_FALSE(folder.Has("none"));
 }
 
 }  // namespace

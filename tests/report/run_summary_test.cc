@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "splitfusion/lib/base/archive.h"
 #include "support/sample_report.h"
 
 namespace splitfusion {
@@ -53,6 +55,73 @@ TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
   EXPECT_EQ(person.vertices, 400);
   EXPECT_EQ(person.lost, std::vector<int>{3});
   EXPECT_EQ(person.hidden, std::vector<int>{4});
+}
+
+TEST(SummaryBuilder, GoesOnFromItsState) {
+  const std::vector<std::string> states = {"born",   "tracked", "lost",
+                                           "hidden", "tracked", "hidden"};
+  for (std::size_t saved = 0; saved < states.size(); ++saved) {
+    SummaryBuilder whole, begun, resumed;
+    for (std::size_t frame = 0; frame < states.size(); ++frame) {
+      FrameReport report = SampleReport(static_cast<int>(frame));
+      report.total_seconds = 0.1 * static_cast<double>(frame);
+      report.surfaces[1].state = states[frame];
+      whole.Add(report);
+      (frame <= saved ? begun : resumed).Add(report);
+      if (frame != saved) continue;
+      std::stringstream stream;
+      ArchiveWriter writer(&stream);
+      writer(begun);
+      writer.Flush();
+      ArchiveReader reader(&stream, stream.str().size(), "state");
+      reader(resumed);
+    }
+    EXPECT_EQ(ToJson(resumed.Build()), ToJson(whole.Build())) << saved;
+  }
+}
+
+/// A run whose person goes through these states.
+RunSummary Through(const std::vector<std::string>& states) {
+  SummaryBuilder builder;
+  for (std::size_t frame = 0; frame < states.size(); ++frame) {
+    FrameReport report = SampleReport(static_cast<int>(frame));
+    report.surfaces[1].label = "person";
+    report.surfaces[1].state = states[frame];
+    builder.Add(report);
+  }
+  return builder.Build();
+}
+
+TEST(SummaryBuilder, CountsWhoWasLostOccludedAndFoundAgain) {
+  const RunSummary summary =
+      Through({"born", "tracked", "hidden", "hidden", "tracked", "lost",
+               "tracked", "unseen", "tracked"});
+  EXPECT_EQ(summary.lost_frames, 1);
+  EXPECT_EQ(summary.occluded_frames, 2);
+  EXPECT_EQ(summary.refound_frames, 3);
+  EXPECT_EQ(summary.surfaces[1].refound, (std::vector<int>{4, 6, 8}));
+  EXPECT_EQ(summary.surfaces[1].away_since, -1);
+  const auto json = ToJson(summary)["surfaces"][1];
+  EXPECT_EQ(json["lost_frames"], 1);
+  EXPECT_EQ(json["occluded_frames"], 2);
+  EXPECT_EQ(json["refound_frames"], 3);
+  EXPECT_TRUE(json["away_since"].is_null());
+}
+
+TEST(VerdictLine, SaysWhoWasNotFoundAgain) {
+  EXPECT_EQ(VerdictLine(Through({"born", "tracked"})),
+            "2 frames, 2 surfaces, none lost or occluded");
+  EXPECT_EQ(VerdictLine(Through({"born", "lost", "tracked"})),
+            "3 frames, 2 surfaces; 1 person lost in 1 frame, found again");
+  RunSummary summary =
+      Through({"born", "tracked", "hidden", "lost", "hidden", "unseen"});
+  EXPECT_EQ(summary.surfaces[1].away_since, 2);
+  EXPECT_EQ(VerdictLine(summary),
+            "6 frames, 2 surfaces; 1 person lost in 1 frame, occluded in 2 "
+            "frames, not found again since frame 2");
+  summary.complete = false;
+  EXPECT_EQ(VerdictLine(summary).rfind("incomplete: ", 0), 0u);
+  EXPECT_EQ(ToJson(summary)["verdict"], VerdictLine(summary));
 }
 
 TEST(SummaryBuilder, ADroppedSurfaceBeginsAnew) {

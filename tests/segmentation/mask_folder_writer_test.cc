@@ -171,5 +171,17 @@ TEST(RecordingSegmenter, PassesOnAndKeepsTheMasks) {
   ExpectSame(reader.Segment(MakeFrame(3)), MakeInstances());
 }
 
+TEST(RecordingSegmenter, DoesNotRecordAFrameTwice) {
+  const TemporaryFolder folder;
+  for (int run = 0; run < 2; ++run) {
+    RecordingSegmenter recording(std::make_unique<ConstantSegmenter>(),
+                                 folder / "kept", kSettings);
+    ExpectSame(recording.Segment(MakeFrame(3)), MakeInstances());
+  }
+  EXPECT_EQ(Lines(folder.Read("kept/detections.jsonl")), 3);
+  MaskFolderSegmenter reader(folder / "kept");
+  ExpectSame(reader.Segment(MakeFrame(3)), MakeInstances());
+}
+
 }  // namespace
 }  // namespace splitfusion

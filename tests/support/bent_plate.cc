@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "splitfusion/lib/deformation/graph_file.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/render/rasterizer.h"
 #include "splitfusion/lib/sequence/trajectory.h"

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <sstream>
 #include <utility>
+
+#include "splitfusion/lib/base/archive.h"
 
 namespace splitfusion {
 namespace {
@@ -39,15 +42,37 @@ class SyntheticRun::Detections : public Segmenter {
 
 SyntheticRun::SyntheticRun(const SyntheticOptions& scene_options,
                            PipelineOptions options, const TermRegistry& terms)
-    : scene_(scene_options), detections_(std::make_shared<Detections>()) {
+    : scene_(scene_options),
+      options_(std::move(options)),
+      terms_(terms),
+      detections_(std::make_shared<Detections>()) {
   const double scale = scene_options.width / 640.0;
   const auto scaled = [&](int pixels) {
     return std::max(1, static_cast<int>(pixels * scale * scale));
   };
-  options.split.min_pixels = scaled(options.split.min_pixels);
-  options.min_tracked_pixels = scaled(options.min_tracked_pixels);
-  fusion_ = std::make_unique<SplitFusion>(scene_.camera(), options,
-                                          LabelTable(), detections_, terms);
+  options_.split.min_pixels = scaled(options_.split.min_pixels);
+  options_.min_tracked_pixels = scaled(options_.min_tracked_pixels);
+  fusion_ = MakeFusion();
+}
+
+std::unique_ptr<SplitFusion> SyntheticRun::MakeFusion() const {
+  return std::make_unique<SplitFusion>(scene_.camera(), options_, LabelTable(),
+                                       detections_, terms_);
+}
+
+std::string SyntheticRun::State() const {
+  std::ostringstream out;
+  ArchiveWriter archive(&out);
+  archive(next_, *fusion_);
+  archive.Flush();
+  return out.str();
+}
+
+void SyntheticRun::RestartFrom(const std::string& state) {
+  fusion_ = MakeFusion();
+  std::istringstream in(state);
+  ArchiveReader archive(&in, state.size(), "state");
+  archive(next_, *fusion_);
 }
 
 FrameReport SyntheticRun::Next(const Spoil& spoil) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
@@ -24,6 +25,13 @@ class SyntheticRun {
   /// Processes the next frame of the scene.
   FrameReport Next(const Spoil& spoil = {});
 
+  /// All that later frames depend on, as an archive.
+  std::string State() const;
+
+  /// Goes on from a State() of such a run: with a new object, as a new process
+  /// would.
+  void RestartFrom(const std::string& state);
+
   const SyntheticScene& scene() const { return scene_; }
   SplitFusion& fusion() { return *fusion_; }
   /// The last frame that was processed, as the scene made it.
@@ -43,7 +51,11 @@ class SyntheticRun {
  private:
   class Detections;
 
+  std::unique_ptr<SplitFusion> MakeFusion() const;
+
   SyntheticScene scene_;
+  PipelineOptions options_;
+  TermRegistry terms_;
   std::shared_ptr<Detections> detections_;
   std::unique_ptr<SplitFusion> fusion_;
   SyntheticFrame frame_;

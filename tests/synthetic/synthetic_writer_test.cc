@@ -36,13 +36,14 @@ SyntheticWriterOptions EveryOther() {
   return options;
 }
 
-/// Relative path and content of every file below a folder.
+/// Relative path and content of every file below a folder but the marker.
 std::map<std::string, std::string> Contents(const TemporaryFolder& folder,
                                             const std::string& name) {
   std::map<std::string, std::string> contents;
   for (const auto& entry : fs::recursive_directory_iterator(folder / name)) {
     if (!entry.is_regular_file()) continue;
     const std::string path = fs::relative(entry.path(), folder / "").string();
+    if (entry.path().filename() == "sf_synth.json") continue;  // A new id.
     contents[path.substr(name.size())] = folder.Read(path);
   }
   return contents;
@@ -234,11 +235,66 @@ TEST_F(SyntheticWriterTest, RefusesAFolderThatIsNotEmpty) {
   EXPECT_EQ(EntryCount(folder_ / ""), 1u);
 }
 
-TEST_F(SyntheticWriterTest, OverwritesOnlySequences) {
+TEST_F(SyntheticWriterTest, OverwritesOnlyItsOwnSequences) {
   folder_.Write("home/thesis.txt", "years of work");
-  ExpectInputError([&] { Write("home", /*overwrite=*/true); },
-                   "not overwritten, since it is not a sequence");
+  // A recording: it has an associations.txt, but nothing says who made it.
+  folder_.Write("recording/associations.txt", "0 rgb/0.png 0 depth/0.png\n");
+  folder_.Write("recording/rgb/0.png", "an image");
+  for (const char* name : {"home", "recording"}) {
+    ExpectInputError([&] { Write(name, /*overwrite=*/true); },
+                     "not overwritten, for sf_synth did not write it");
+  }
   EXPECT_EQ(folder_.Read("home/thesis.txt"), "years of work");
+  EXPECT_EQ(folder_.Read("recording/rgb/0.png"), "an image");
+}
+
+TEST_F(SyntheticWriterTest, OverwritingKeepsFilesOfOthers) {
+  Write("seq");
+  folder_.Write("seq/notes.txt", "mine");
+  folder_.Write("seq/masks/0.png", "drawn by hand");
+  SyntheticOptions shorter = TinyOptions();
+  shorter.frames = 2;
+  SyntheticWriterOptions options = EveryOther();
+  options.overwrite = true;
+  const auto kept = WriteSyntheticSequence(shorter, options, folder_ / "seq");
+  EXPECT_EQ(kept, (std::vector<std::string>{"masks/0.png", "notes.txt"}));
+  EXPECT_EQ(folder_.Read("seq/notes.txt"), "mine");
+  EXPECT_EQ(folder_.Read("seq/masks/0.png"), "drawn by hand");
+  EXPECT_EQ(TumReader(folder_ / "seq").size(), 2);
+  EXPECT_EQ(EntryCount(folder_ / "seq/rgb"), 2u) << "old frames are gone";
+  EXPECT_EQ(EntryCount(folder_ / ""), 1u);
+}
+
+TEST_F(SyntheticWriterTest, ChangedFilesAreNotOverwritten) {
+  Write("seq");
+  folder_.Write("seq/calibration.txt", "my own numbers");
+  const auto before = Contents(folder_, "seq");
+  ExpectInputError([&] { Write("seq", /*overwrite=*/true); },
+                   "seq/calibration.txt: not overwritten, for it was changed");
+  EXPECT_EQ(Contents(folder_, "seq"), before);
+  EXPECT_EQ(EntryCount(folder_ / ""), 1u);
+}
+
+TEST_F(SyntheticWriterTest, AFileOfOthersUnderANewNameIsNotOverwritten) {
+  SyntheticOptions shorter = TinyOptions();
+  shorter.frames = 2;
+  WriteSyntheticSequence(shorter, EveryOther(), folder_ / "seq");
+  const std::string later =
+      "seq/rgb/" + SyntheticScene(TinyOptions()).Stem(3) + ".png";
+  folder_.Write(later, "mine");
+  ExpectInputError([&] { Write("seq", /*overwrite=*/true); },
+                   ".png: not overwritten, for sf_synth did not write it");
+  EXPECT_EQ(folder_.Read(later), "mine");
+  EXPECT_EQ(TumReader(folder_ / "seq").size(), 2);
+  EXPECT_EQ(EntryCount(folder_ / ""), 1u);
+}
+
+TEST_F(SyntheticWriterTest, ALinkToASequenceStays) {
+  Write("seq");
+  fs::create_directory_symlink(folder_ / "seq", folder_ / "link");
+  Write("link", /*overwrite=*/true);
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(EntryCount(folder_ / ""), 2u);
 }
 
 TEST_F(SyntheticWriterTest, AnEmptyFolderAndASlashAtTheEndAreFine) {

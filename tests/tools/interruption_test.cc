@@ -38,8 +38,9 @@ class Interruption : public ::testing::Test {
   }
 
   int FramesIn(const std::string& run) const {
-    if (!folder_.Has(run + "/frames.jsonl")) return 0;
-    const std::string lines = folder_.Read(run + "/frames.jsonl");
+    const std::string begun = folder_.Read(run + "/unfinished/frames.jsonl");
+    const std::string lines =
+        begun.empty() ? folder_.Read(run + "/frames.jsonl") : begun;
     return static_cast<int>(std::count(lines.begin(), lines.end(), '\n'));
   }
 

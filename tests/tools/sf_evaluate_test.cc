@@ -90,7 +90,7 @@ TEST_F(SfEvaluate, LeavesOutWhatIsNotKnownOrNot) {
   for (const bool unknown : {false, true}) {
     const ProgramResult result =
         Run("--depth_every=9 --run=" + (folder_ / "run") +
-            (unknown ? " --with_unknown" : ""));
+            (unknown ? "" : " --known_only"));
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     const auto found =
         nlohmann::json::parse(folder_.Read("run/evaluation.json"));
@@ -104,8 +104,10 @@ TEST_F(SfEvaluate, LeavesOutWhatIsNotKnownOrNot) {
       EXPECT_NEAR(uncovered, 0.45, 0.1);
     }
   }
-  ExpectRefused("--with_unknown --trajectory=a --ground_truth=b",
-                "--with_unknown needs --run");
+  ExpectRefused("--known_only --trajectory=a --ground_truth=b",
+                "--known_only needs --run");
+  // The former flag for what is the default now.
+  EXPECT_EQ(Run("--with_unknown --run=" + (folder_ / "run")).exit_code, 0);
 }
 
 TEST_F(SfEvaluate, NeedsNoTruthToCompareTheModelWithTheLiveDepth) {
@@ -170,6 +172,8 @@ TEST_F(SfEvaluate, BadUsageAndInputEndWithTwoAndOneLine) {
   ExpectRefused("--flagfile=/no/such/file", "/no/such/file");
   ExpectRefused("run", "argument 'run': expected flags only");
   ExpectRefused("--run=/no/such/run --ground_truth=x", "/no/such/run");
+  ExpectRefused("--track_frame=3,x --run=" + (folder_ / "run"),
+                "track_frame = 3,x: expected frame indices");
   ExpectRefused("--depth_every=-1 --run=" + (folder_ / "run"),
                 "depth_every = -1");
   ExpectRefused("--trajectory=a --ground_truth=b", "a: cannot be opened");

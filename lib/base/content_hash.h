@@ -1,0 +1,43 @@
+#ifndef SPLITFUSION_LIB_BASE_CONTENT_HASH_H_
+#define SPLITFUSION_LIB_BASE_CONTENT_HASH_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace splitfusion {
+
+/// Hash of bytes that are given piece by piece: XXH3 with 128 bits. It finds
+/// damage and differences; it is no protection against forgery.
+class ContentHash {
+ public:
+  ContentHash();
+  ~ContentHash();
+  ContentHash(ContentHash&&) noexcept;
+  ContentHash& operator=(ContentHash&&) noexcept;
+
+  /// Appends bytes.
+  ContentHash& Add(const void* data, std::size_t bytes);
+  /// Appends a text and its length, so that "ab", "c" is not "a", "bc".
+  ContentHash& Add(const std::string& text);
+
+  /// Of all that was added, 32 hexadecimal digits.
+  std::string Hex() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// XXH3 with 64 bits, for the checksums within binary files.
+std::uint64_t Checksum64(const void* data, std::size_t bytes);
+
+/// Hash of a file's content, as ContentHash::Hex().
+///
+/// @throw InputError if the file cannot be read.
+std::string HashOfFile(const std::string& path);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_BASE_CONTENT_HASH_H_

@@ -1,0 +1,191 @@
+#include "splitfusion/lib/deformation/graph_file.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<Eigen::Vector3d> Positions(const std::string& path,
+                                       const Json& json) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const Json& item : json) {
+    const auto p = item.get<std::array<double, 3>>();
+    positions.emplace_back(p[0], p[1], p[2]);
+    if (!positions.back().cast<float>().allFinite()) {
+      throw InputError(path + ": field 'positions': " + item.dump() +
+                       ": expected metres");
+    }
+  }
+  return positions;
+}
+
+void CheckEdges(const std::string& path, const DeformationGraph& graph) {
+  if (graph.neighbors.size() != graph.positions.size()) {
+    throw InputError(path + ": 'edges' has " +
+                     std::to_string(graph.neighbors.size()) +
+                     " entries: expected one a node, " +
+                     std::to_string(graph.positions.size()));
+  }
+  for (const std::vector<int>& neighbors : graph.neighbors) {
+    for (const int j : neighbors) {
+      if (j >= 0 && j < graph.size()) continue;
+      throw InputError(path + ": 'edges' names node " + std::to_string(j) +
+                       ": expected 0.." + std::to_string(graph.size() - 1));
+    }
+  }
+}
+
+void CheckArray(const std::string& path, const std::string& field,
+                const Json& json) {
+  if (json.is_array()) return;
+  throw InputError(path + ": field '" + field + "': " + json.dump() +
+                   ": expected an array");
+}
+
+/// A field that has an entry for every node or none at all.
+void CheckEntries(const std::string& path, const std::string& field,
+                  const Json& json, std::size_t nodes) {
+  CheckArray(path, field, json);
+  if (json.size() == nodes || json.empty()) return;
+  throw InputError(
+      path + ": '" + field + "' has " + std::to_string(json.size()) +
+      " entries: expected one a node, " + std::to_string(nodes) + ", or none");
+}
+
+std::vector<int> Frames(const std::string& path, const std::string& field,
+                        const Json& json) {
+  std::vector<int> frames;
+  for (const Json& item : json) {
+    const bool is_frame =
+        item.is_number_unsigned() && item.get<std::uint64_t>() <= INT32_MAX;
+    if (!is_frame) {
+      throw InputError(path + ": field '" + field + "': " + item.dump() +
+                       ": expected a frame index");
+    }
+    frames.push_back(item.get<int>());
+  }
+  return frames;
+}
+
+std::vector<int> FirstSeen(const std::string& path, const Json& json,
+                           std::size_t nodes) {
+  CheckEntries(path, "first_seen", json, nodes);
+  return Frames(path, "first_seen", json);
+}
+
+/// Runs of frames of one node: [first, last, first, last, ...].
+std::vector<FrameRun> Runs(const std::string& path, const Json& json) {
+  CheckArray(path, "sightings", json);
+  const std::vector<int> ends = Frames(path, "sightings", json);
+  bool ascending = !ends.empty() && ends.size() % 2 == 0;
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    // A run may be one frame, but the next one begins later.
+    const bool next_run = i % 2 == 0;
+    ascending = ascending &&
+                (next_run ? ends[i - 1] < ends[i] : ends[i - 1] <= ends[i]);
+  }
+  if (!ascending) {
+    throw InputError(path + ": field 'sightings': " + json.dump() +
+                     ": expected first and last frames of runs, ascending");
+  }
+  std::vector<FrameRun> runs;
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    runs.push_back({ends[i], ends[i + 1]});
+  }
+  return runs;
+}
+
+std::vector<std::vector<FrameRun>> Sightings(const std::string& path,
+                                             const Json& json,
+                                             std::size_t nodes) {
+  CheckEntries(path, "sightings", json, nodes);
+  std::vector<std::vector<FrameRun>> sightings;
+  for (const Json& item : json) sightings.push_back(Runs(path, item));
+  return sightings;
+}
+
+DeformationGraph ParseGraph(const std::string& path, const Json& json) {
+  DeformationGraph graph;
+  const char* field = "node_spacing";
+  try {
+    graph.node_spacing = json.at(field).get<double>();
+    graph.positions = Positions(path, json.at(field = "positions"));
+    graph.neighbors =
+        json.at(field = "edges").get<std::vector<std::vector<int>>>();
+  } catch (const Json::exception& error) {
+    throw InputError(path + ": field '" + field + "': " + error.what());
+  }
+  if (!std::isfinite(graph.node_spacing) || graph.node_spacing < 0) {
+    throw InputError(
+        path + ": field 'node_spacing': " + std::to_string(graph.node_spacing) +
+        ": expected metres >= 0");
+  }
+  graph.motions.resize(graph.positions.size());
+  CheckEdges(path, graph);
+  graph.first_seen = FirstSeen(path, json.value("first_seen", Json::array()),
+                               graph.positions.size());
+  graph.sightings = Sightings(path, json.value("sightings", Json::array()),
+                              graph.positions.size());
+  return graph;
+}
+
+int ParseNeighborsPerPoint(const std::string& path, const Json& json) {
+  const auto found = json.find("neighbors_per_point");
+  if (found == json.end() || !found->is_number_integer()) {
+    throw InputError(path +
+                     ": field 'neighbors_per_point': expected an integer");
+  }
+  return found->get<int>();
+}
+
+}  // namespace
+
+void WriteGraph(const std::string& path, const DeformationGraph& graph,
+                int neighbors_per_point) {
+  Json positions = Json::array();
+  for (const Eigen::Vector3d& g : graph.positions) {
+    positions.push_back({g.x(), g.y(), g.z()});
+  }
+  Json sightings = Json::array();
+  for (const std::vector<FrameRun>& runs : graph.sightings) {
+    sightings.push_back(Json::array());
+    for (const FrameRun& run : runs) {
+      sightings.back().push_back(run.first);
+      sightings.back().push_back(run.last);
+    }
+  }
+  const Json json = {{"node_spacing", graph.node_spacing},
+                     {"neighbors_per_point", neighbors_per_point},
+                     {"positions", positions},
+                     {"edges", graph.neighbors},
+                     {"first_seen", graph.first_seen},
+                     {"sightings", sightings}};
+  WriteFileAtomically(path, [&](std::ostream& out) { out << json << '\n'; });
+}
+
+DeformationGraph ReadGraph(const std::string& path, int* neighbors_per_point) {
+  std::ifstream stream(path);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) {
+    throw InputError(path +
+                     ": expected a JSON object with node_spacing, "
+                     "neighbors_per_point, positions, edges");
+  }
+  if (neighbors_per_point != nullptr) {
+    *neighbors_per_point = ParseNeighborsPerPoint(path, json);
+  }
+  return ParseGraph(path, json);
+}
+
+}  // namespace splitfusion

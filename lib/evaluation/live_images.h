@@ -1,0 +1,60 @@
+#ifndef SPLITFUSION_LIB_EVALUATION_LIVE_IMAGES_H_
+#define SPLITFUSION_LIB_EVALUATION_LIVE_IMAGES_H_
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/evaluation/recorded_run.h"
+#include "splitfusion/lib/sequence/association_list.h"
+#include "splitfusion/lib/sequence/calibration.h"
+
+namespace splitfusion {
+
+/// What the camera measured in the frames of a run: the depth images of the
+/// sequence that options.flags names, and the masks of the run. Images are read
+/// when they are asked for; thread-safe.
+class LiveImages {
+ public:
+  /// Reads the lists and the calibration of the sequence.
+  ///
+  /// @throw InputError if the run does not say where the sequence is or has no
+  ///     camera, or if a list or the calibration is missing or broken.
+  explicit LiveImages(const RecordedRun& run);
+
+  /// Intrinsics of all images.
+  const PinholeCamera& camera() const { return calibration_.camera; }
+
+  /// Depth as measured, HxW, metres, 0 = none.
+  ///
+  /// @throw InputError if the image is missing or broken, or if the sequence
+  ///     has another image there than the run.
+  cv::Mat_<float> Depth(const RecordedFrame& frame) const;
+
+  /// The same after the filter that the run applied.
+  cv::Mat_<float> FilteredDepth(const RecordedFrame& frame) const;
+
+  /// Surface ids of the pixels, RUN/masks/STEM.png, HxW.
+  ///
+  /// @throw InputError if it is missing or broken.
+  cv::Mat_<std::uint16_t> Mask(const RecordedFrame& frame) const;
+
+  /// STEM.png of a folder of label images, HxW; empty if there is no such file.
+  ///
+  /// @throw InputError if it is broken.
+  cv::Mat_<std::uint16_t> Labels(const std::string& folder,
+                                 const RecordedFrame& frame) const;
+
+ private:
+  cv::Mat_<std::uint16_t> ReadIds(const std::string& path) const;
+
+  std::string run_;
+  std::string sequence_;
+  DepthFilterOptions filter_;
+  Calibration calibration_;
+  std::vector<AssociatedFiles> files_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EVALUATION_LIVE_IMAGES_H_

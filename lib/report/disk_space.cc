@@ -1,0 +1,40 @@
+#include "splitfusion/lib/report/disk_space.h"
+
+#include <filesystem>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+namespace {
+
+// Measured on sequences of 320x240 and 640x480, and rounded down: the check is
+// for disks on which a run cannot end.
+constexpr std::uint64_t kModelBytesPerPixel = 200;
+constexpr std::uint64_t kPictureBytesPerPixel = 4;
+constexpr std::uint64_t kBytesPerFrame = 20000;
+
+std::string Megabytes(std::uint64_t bytes) {
+  return std::to_string((bytes + 999999) / 1000000) + " MB";
+}
+
+}  // namespace
+
+std::uint64_t EstimatedBytes(const RunExtent& extent) {
+  const std::uint64_t pixels = extent.pixels;
+  const std::uint64_t frames = extent.frames;
+  const std::uint64_t pictures =
+      extent.pictures_every > 0 ? frames / extent.pictures_every + 1 : 0;
+  return pixels * (kModelBytesPerPixel + pictures * kPictureBytesPerPixel) +
+         frames * kBytesPerFrame;
+}
+
+void CheckDiskSpace(const std::string& folder, std::uint64_t bytes) {
+  std::error_code error;
+  const auto space = std::filesystem::space(folder, error);
+  if (error || space.available >= bytes) return;
+  throw InputError(folder + ": the disk has " + Megabytes(space.available) +
+                   " left: expected " + Megabytes(bytes) +
+                   " at least for this run");
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,267 @@
+#include "splitfusion/lib/report/run_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/random_id.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of a run that is put into place, in its marker.
+constexpr char kCheckpoint[] = "checkpoint.bin";
+
+void MakeFolder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw InputError(folder + ": cannot be made a run directory (" +
+                     (error ? error.message() : "not a directory") + ")");
+  }
+}
+
+/// Whether it holds anything but log files and what `own` names.
+bool HoldsOthers(const std::string& folder, const std::vector<fs::path>& own) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path name = entry.path().filename();
+    const bool known = name.extension() == ".log" ||
+                       std::find(own.begin(), own.end(), name) != own.end();
+    if (!known) return true;
+  }
+  return false;
+}
+
+/// Files that the next frames write again, or that only an ended run has.
+bool IsOfTheEnd(const std::string& path) {
+  const std::string first = fs::path(path).begin()->string();
+  return first == "surfaces" || first == "summary.json" ||
+         first == "report.html" || first == "evaluation.json";
+}
+
+void Rename(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  fs::rename(from, to, error);
+  if (error) {
+    throw InputError(to.string() + ": cannot be written (" + error.message() +
+                     ")");
+  }
+}
+
+/// Moves those of the files that are still in `from`. What lies at their place
+/// and is nobody's of ours is kept under another name.
+void MoveFiles(const OwnedFileList& files, const fs::path& from,
+               const fs::path& to, const std::string& id) {
+  for (const OwnedFile& file : files) {
+    if (!fs::exists(from / file.path)) continue;
+    const fs::path target = to / file.path;
+    if (fs::exists(target) && !fs::is_regular_file(target)) {
+      throw InputError(target.string() + ": is in the way of a file of a run");
+    }
+    if (fs::exists(target)) {
+      Rename(target, target.string() + ".before-" + id.substr(0, 8));
+    }
+    Rename(from / file.path, target);
+  }
+}
+
+/// What a killed program was writing: lib/base/atomic_file names it so.
+void RemoveTemporaries(const std::string& folder) {
+  for (const OwnedFile& file : FilesBelow(folder)) {
+    const std::string name = fs::path(file.path).filename().string();
+    const bool temporary =
+        name.front() == '.' && name.find(".tmp") != std::string::npos;
+    if (temporary) fs::remove(fs::path(folder) / file.path);
+  }
+}
+
+/// Empty folders that are left when the files have been moved.
+void RemoveEmptyFolders(const std::string& folder) {
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (fs::is_directory(entry.symlink_status())) {
+      folders.push_back(entry.path());
+    }
+  }
+  std::error_code ignored;  // Those that are not empty stay.
+  for (auto it = folders.rbegin(); it != folders.rend(); ++it) {
+    fs::remove(*it, ignored);
+  }
+}
+
+}  // namespace
+
+RunFolder::RunFolder(std::string root, RunIdentity identity,
+                     const RunFolderOptions& options)
+    : root_(std::move(root)),
+      paths_(root_),
+      unfinished_(paths_.Unfinished()),
+      identity_(std::move(identity)) {
+  MakeFolder(root_);
+  Lock();
+  Recover();
+  Decide(options);
+}
+
+void RunFolder::Lock() {
+  LockHolder holder;
+  lock_ = DirectoryLock::TryAcquire(paths_.Lock(), &holder);
+  if (lock_) return;
+  throw InputError(root_ + ": " + holder.ToString() +
+                   " works on it: expected a folder of one's own");
+}
+
+void RunFolder::CheckHeld() const {
+  if (lock_ && lock_->IsHeld()) return;
+  throw InputError(root_ +
+                   ": was removed or taken over while the run went on: "
+                   "expected the folder to stay");
+}
+
+/// A program was killed while it put a run into place: that goes on.
+void RunFolder::Recover() {
+  const std::optional<RunMarker> begun = ReadRunMarker(unfinished_.root());
+  if (begun && begun->phase != PublishingPhase::kNone) PutInPlace(*begun);
+}
+
+void RunFolder::Decide(const RunFolderOptions& options) {
+  const std::optional<RunMarker> published = ReadRunMarker(root_);
+  const std::optional<RunMarker> begun = ReadRunMarker(unfinished_.root());
+  if (!published && HoldsOthers(root_, {"lock", "unfinished"})) {
+    throw InputError(root_ +
+                     ": is not empty and not a run (it has no run.json): "
+                     "expected a new or empty folder, or a run to overwrite");
+  }
+  const bool can_resume = options.resume && begun && begun->IsSame(identity_);
+  const bool finished = published &&
+                        published->status == RunStatus::kComplete &&
+                        published->IsSame(identity_);
+  if (finished && (!options.overwrite || options.keep_same)) {
+    marker_ = *published;
+    start_ = RunStart::kFinished;
+  } else if (can_resume && (options.overwrite || !published ||
+                            published->IsSame(identity_))) {
+    Resume(*begun);
+  } else {
+    DecideBesides(published, begun, options);
+  }
+}
+
+void RunFolder::DecideBesides(const std::optional<RunMarker>& published,
+                              const std::optional<RunMarker>& begun,
+                              const RunFolderOptions& options) {
+  const std::optional<RunMarker>& older = published ? published : begun;
+  if (older) {
+    const std::string changes = Differences(older->identity, identity_);
+    const std::string what =
+        "a run that is " + ToString(older->status) +
+        (changes.empty() ? "" : ", of other options (" + changes + ")");
+    const bool again = changes.empty() && !published;
+    if (!options.overwrite && !again) {
+      throw InputError(root_ + ": holds " + what +
+                       ": expected --overwrite, or another folder");
+    }
+    note_ = "replaces " + what;
+  }
+  Begin();
+}
+
+void RunFolder::RemoveUnfinished() {
+  if (!fs::exists(unfinished_.root())) return;
+  if (!ReadRunMarker(unfinished_.root()) &&
+      HoldsOthers(unfinished_.root(), {})) {
+    throw InputError(unfinished_.root() +
+                     ": is not of a run (it has no run.json): expected a "
+                     "folder of sf_run");
+  }
+  fs::remove_all(unfinished_.root());
+}
+
+void RunFolder::Begin() {
+  RemoveUnfinished();
+  MakeFolder(unfinished_.root());
+  start_ = RunStart::kFresh;
+  marker_ = RunMarker();
+  marker_.id = RandomId();
+  marker_.identity = identity_;
+  WriteRunMarker(unfinished_.root(), marker_);
+}
+
+void RunFolder::Resume(RunMarker begun) {
+  // What an interruption put into place goes back, but for what only the end
+  // of a run has.
+  const std::optional<RunMarker> published = ReadRunMarker(root_);
+  if (published && published->id == begun.id) {
+    OwnedFileList back, gone;
+    for (const OwnedFile& file : published->Owned()) {
+      (IsOfTheEnd(file.path) ? gone : back).push_back(file);
+    }
+    RemoveOwnedFiles(root_, gone);
+    MoveFiles(back, root_, unfinished_.root(), begun.id);
+    RemoveOwnedFiles(root_, published->Owned());  // Their folders.
+    fs::remove(paths_.Marker());
+  }
+  RemoveTemporaries(unfinished_.root());
+  marker_ = std::move(begun);
+  marker_.status = RunStatus::kRunning;
+  marker_.error.clear();
+  WriteRunMarker(unfinished_.root(), marker_);
+  start_ = fs::exists(unfinished_.Checkpoint()) ? RunStart::kResumed
+                                                : RunStart::kFresh;
+  if (start_ == RunStart::kFresh) StartAfresh("killed before a checkpoint");
+}
+
+void RunFolder::StartAfresh(const std::string& why) {
+  note_ = why;
+  Begin();
+}
+
+void RunFolder::RecordResumption(int frame) {
+  marker_.resumed_at.push_back(frame);
+  WriteRunMarker(unfinished_.root(), marker_);
+}
+
+bool RunFolder::Publish(RunStatus status, const std::string& error) {
+  CheckHeld();
+  marker_.status = status;
+  marker_.error = error;
+  const std::optional<RunMarker> older = ReadRunMarker(root_);
+  const bool complete = status == RunStatus::kComplete;
+  if (!complete && older && older->status == RunStatus::kComplete) {
+    WriteRunMarker(unfinished_.root(), marker_);
+    return false;
+  }
+  marker_.files = ListRunFiles(unfinished_.root(), {kCheckpoint});
+  marker_.phase = PublishingPhase::kRemoving;
+  WriteRunMarker(unfinished_.root(), marker_);
+  PutInPlace(marker_);
+  marker_.phase = PublishingPhase::kNone;
+  return true;
+}
+
+void RunFolder::PutInPlace(RunMarker marker) {
+  if (marker.phase == PublishingPhase::kRemoving) {
+    const std::optional<RunMarker> older = ReadRunMarker(root_);
+    if (older) RemoveOwnedFiles(root_, older->Owned());
+    fs::remove(paths_.Marker());
+    marker.phase = PublishingPhase::kMoving;
+    WriteRunMarker(unfinished_.root(), marker);
+  }
+  MoveFiles(marker.Owned(), unfinished_.root(), root_, marker.id);
+  marker.phase = PublishingPhase::kNone;
+  WriteRunMarker(root_, marker);
+  if (marker.status == RunStatus::kComplete) {
+    fs::remove_all(unfinished_.root());
+    return;
+  }
+  marker.files.clear();
+  WriteRunMarker(unfinished_.root(), marker);
+  RemoveEmptyFolders(unfinished_.root());
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,184 @@
+#include "splitfusion/lib/report/run_marker.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/content_hash.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/report/run_paths.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kFormatVersion = 1;
+constexpr char kTool[] = "sf_run";
+
+constexpr std::array<RunStatus, 4> kStatuses = {
+    RunStatus::kRunning, RunStatus::kComplete, RunStatus::kIncomplete,
+    RunStatus::kFailed};
+
+RunStatus ParseStatus(const std::string& text) {
+  for (const RunStatus status : kStatuses) {
+    if (ToString(status) == text) return status;
+  }
+  throw InputError("status '" + text + "': expected running, complete, " +
+                   "incomplete or failed");
+}
+
+Json ToJson(const RunMarker& marker) {
+  Json files = Json::array();
+  for (const auto& [path, file] : marker.files) {
+    files.push_back(
+        {{"path", path}, {"bytes", file.bytes}, {"xxh3", file.xxh3}});
+  }
+  return {{"format_version", kFormatVersion},
+          {"tool", kTool},
+          {"id", marker.id},
+          {"status", ToString(marker.status)},
+          {"error", marker.error},
+          {"resumed_at", marker.resumed_at},
+          {"identity", marker.identity.Hash()},
+          {"identity_parts", marker.identity.parts},
+          {"outputs", marker.identity.outputs},
+          {"phase", static_cast<int>(marker.phase)},
+          {"files", files}};
+}
+
+/// A path that stays within the folder.
+std::string CheckedPath(const std::string& path) {
+  const fs::path parts(path);
+  const bool leaves =
+      path.empty() || parts.is_absolute() ||
+      std::find(parts.begin(), parts.end(), "..") != parts.end();
+  if (leaves) {
+    throw InputError("path '" + path + "': expected one within the folder");
+  }
+  return path;
+}
+
+RunMarker FromJson(const Json& json) {
+  if (json.at("tool") != kTool || json.at("format_version") != kFormatVersion) {
+    throw InputError("expected format_version 1 of sf_run");
+  }
+  RunMarker marker;
+  marker.id = json.at("id").get<std::string>();
+  marker.status = ParseStatus(json.at("status").get<std::string>());
+  marker.error = json.at("error").get<std::string>();
+  marker.resumed_at = json.at("resumed_at").get<std::vector<int>>();
+  marker.identity.parts = json.at("identity_parts").get<NamedValues>();
+  marker.identity.outputs = json.at("outputs").get<NamedValues>();
+  const int phase = json.value("phase", 0);
+  if (phase < 0 || phase > static_cast<int>(PublishingPhase::kMoving)) {
+    throw InputError("phase " + std::to_string(phase) + ": expected 0..2");
+  }
+  marker.phase = static_cast<PublishingPhase>(phase);
+  for (const Json& file : json.at("files")) {
+    marker.files[CheckedPath(file.at("path").get<std::string>())] = {
+        file.at("bytes").get<std::uint64_t>(),
+        file.at("xxh3").get<std::string>()};
+  }
+  return marker;
+}
+
+RunFile Describe(const std::string& path) {
+  return {fs::file_size(path), HashOfFile(path)};
+}
+
+}  // namespace
+
+std::string ToString(RunStatus status) {
+  switch (status) {
+    case RunStatus::kRunning:
+      return "running";
+    case RunStatus::kComplete:
+      return "complete";
+    case RunStatus::kIncomplete:
+      return "incomplete";
+    case RunStatus::kFailed:
+      break;
+  }
+  return "failed";
+}
+
+OwnedFileList RunMarker::Owned() const {
+  OwnedFileList owned;
+  for (const auto& [path, file] : files) owned.push_back({path, file.bytes});
+  return owned;
+}
+
+bool RunMarker::IsSame(const RunIdentity& other) const {
+  return identity.parts == other.parts && identity.outputs == other.outputs;
+}
+
+std::optional<RunMarker> ReadRunMarker(const std::string& folder) {
+  const std::string path = RunPaths(folder).Marker();
+  if (!fs::exists(path)) return std::nullopt;
+  std::ifstream stream(path);
+  try {
+    return FromJson(Json::parse(stream));
+  } catch (const Json::exception&) {
+    throw InputError(path + ": is damaged: expected the marker of a run");
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  }
+}
+
+void WriteRunMarker(const std::string& folder, const RunMarker& marker) {
+  WriteFileAtomically(RunPaths(folder).Marker(), [&](std::ostream& out) {
+    // Names come from the user's files: what is no UTF-8 is replaced.
+    out << ToJson(marker).dump(1, ' ', false, Json::error_handler_t::replace)
+        << '\n';
+  });
+}
+
+std::map<std::string, RunFile> ListRunFiles(
+    const std::string& folder, const std::vector<std::string>& left_out) {
+  std::map<std::string, RunFile> files;
+  const std::string marker =
+      fs::path(RunPaths(folder).Marker()).filename().string();
+  for (const OwnedFile& file : FilesBelow(folder)) {
+    const bool out = file.path == marker ||
+                     std::find(left_out.begin(), left_out.end(), file.path) !=
+                         left_out.end();
+    if (!out) {
+      files[file.path] = Describe((fs::path(folder) / file.path).string());
+    }
+  }
+  return files;
+}
+
+void CheckRunFile(const RunMarker& marker, const std::string& folder,
+                  const std::string& path) {
+  const auto found = marker.files.find(path);
+  if (found == marker.files.end()) return;
+  const std::string file = (fs::path(folder) / path).string();
+  if (!fs::is_regular_file(file)) {
+    throw InputError(file + ": is missing: expected a file of " +
+                     std::to_string(found->second.bytes) + " bytes");
+  }
+  const RunFile now = Describe(file);
+  if (now.bytes == found->second.bytes && now.xxh3 == found->second.xxh3) {
+    return;
+  }
+  throw InputError(file + ": is not as the run wrote it (" +
+                   std::to_string(now.bytes) + " bytes, hash " + now.xxh3 +
+                   "): expected " + std::to_string(found->second.bytes) +
+                   " bytes, hash " + found->second.xxh3);
+}
+
+void AddRunFile(const std::string& folder, const std::string& path) {
+  std::optional<RunMarker> marker = ReadRunMarker(folder);
+  if (!marker) return;
+  marker->files[CheckedPath(path)] =
+      Describe((fs::path(folder) / path).string());
+  WriteRunMarker(folder, *marker);
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,36 @@
+#ifndef SPLITFUSION_PIPELINES_CHECKPOINT_SCHEDULE_H_
+#define SPLITFUSION_PIPELINES_CHECKPOINT_SCHEDULE_H_
+
+namespace splitfusion {
+
+/// When the state of a run is saved.
+class CheckpointSchedule {
+ public:
+  /// Every so many frames; 0: so seldom that saving costs a fiftieth of the
+  /// time; -1: never.
+  explicit CheckpointSchedule(int every) : every_(every) {}
+
+  /// Whether to save now that another frame is done. `seconds`: since the last
+  /// save or the beginning.
+  bool IsDue(double seconds) {
+    ++frames_;
+    if (every_ != 0) return every_ > 0 && frames_ >= every_;
+    return seconds >= interval_;
+  }
+
+  /// The state was saved, which took `seconds`.
+  void Saved(double seconds) {
+    constexpr double kShare = 0.02;
+    frames_ = 0;
+    interval_ = seconds / kShare;
+  }
+
+ private:
+  int every_;
+  int frames_ = 0;
+  double interval_ = 10;  // Seconds, until it is known what saving costs.
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_CHECKPOINT_SCHEDULE_H_

@@ -1,0 +1,215 @@
+#include "identity_flags.h"
+
+#include <gflags/gflags.h>
+
+#include <charconv>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "run_flags.h"
+#include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/base/content_cache.h"
+#include "splitfusion/lib/base/content_hash.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/owned_files.h"
+#include "splitfusion/lib/energy/term_registry.h"
+#include "splitfusion/lib/experiment/settings.h"
+#include "splitfusion/lib/report/library_versions.h"
+#include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+
+DEFINE_string(set, "",
+              "KEY=VALUE; ...: flags, or terms.NAME.KEY for one number of the "
+              "energy, as in terms.arap.weight=4.");
+DECLARE_string(class_names);
+DECLARE_string(labels);
+DECLARE_string(masks);
+DECLARE_string(model);
+DECLARE_string(sequence);
+DECLARE_string(terms);
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Flags that say where something is, whose content counts instead, or that
+/// leave the result as it is.
+const std::set<std::string>& Uncounted() {
+  static const std::set<std::string> names = {"checkpoint_every",
+                                              "class_names",
+                                              "keep_same",
+                                              "labels",
+                                              "masks",
+                                              "max_frames",
+                                              "model",
+                                              "output",
+                                              "resume",
+                                              "overwrite",
+                                              "print_identity",
+                                              "sequence",
+                                              "set",
+                                              "terms",
+                                              "threads",
+                                              "intrinsics",
+                                              "depth_scale",
+                                              "skip_bad_frames"};
+  return names;
+}
+
+/// Flags of what is written about a result.
+const std::set<std::string>& Outputs() {
+  static const std::set<std::string> names = {"full_report", "pictures_every",
+                                              "warped_every", "warped_whole",
+                                              "write_masks"};
+  return names;
+}
+
+/// A number as short as it reads back exactly; other values as they are.
+std::string ValueText(const gflags::CommandLineFlagInfo& flag) {
+  if (flag.type != "double") return flag.current_value;
+  char text[32];
+  const auto end =
+      std::to_chars(text, text + sizeof(text), std::stod(flag.current_value));
+  return {text, end.ptr};
+}
+
+std::string NumberText(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof(text), value);
+  return {text, end.ptr};
+}
+
+void AddFlags(RunIdentity* identity) {
+  std::vector<gflags::CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  for (const gflags::CommandLineFlagInfo& flag : flags) {
+    if (!IsRunFlag(flag)) continue;
+    if (Outputs().count(flag.name) > 0) {
+      identity->outputs[flag.name] = ValueText(flag);
+    } else if (Uncounted().count(flag.name) == 0) {
+      identity->parts[flag.name] = ValueText(flag);
+    }
+  }
+}
+
+void AddTerms(RunIdentity* identity) {
+  const Energy energy = ParseEnergy(FLAGS_terms, BuiltinTerms());
+  for (const auto& [key, value] : TermOptionValues(energy)) {
+    identity->parts["terms." + key] = value;
+  }
+  std::string order;
+  for (const WeightedTerm& term : energy) order += term.options.name + " ";
+  order.pop_back();
+  identity->parts["terms"] = order;
+}
+
+void AddFrames(const TumReader& reader, const ContentCache& cache,
+               RunIdentity* identity) {
+  std::vector<std::string> files;
+  ContentHash hash;
+  for (const AssociatedFiles& pair : reader.pairs()) {
+    files.push_back(pair.color.file);
+    files.push_back(pair.depth.file);
+    hash.Add(NumberText(pair.depth.timestamp));
+  }
+  hash.Add(cache.HashOfFiles(FLAGS_sequence, files));
+  identity->parts["input.frame_count"] = std::to_string(reader.size());
+  identity->parts["input.frames"] = hash.Hex();
+  const Calibration& used = reader.calibration();
+  std::string camera;
+  for (const double value : {used.camera.fx, used.camera.fy, used.camera.cx,
+                             used.camera.cy, double(used.camera.width),
+                             double(used.camera.height), used.depth_scale}) {
+    camera += (camera.empty() ? "" : " ") + NumberText(value);
+  }
+  identity->parts["input.camera"] = camera;
+}
+
+/// Content of a file that a flag names; "none" without one.
+std::string FileHash(const std::string& path) {
+  return path.empty() ? "none" : HashOfFile(path);
+}
+
+std::string MasksHash(const ContentCache& cache) {
+  if (!FLAGS_model.empty() || FLAGS_masks == "none" || FLAGS_masks.empty()) {
+    return "none";
+  }
+  const std::string folder =
+      FLAGS_masks == "auto" ? FindMaskFolder(FLAGS_sequence) : FLAGS_masks;
+  if (folder.empty()) return "none";
+  std::vector<std::string> files;
+  for (const OwnedFile& file : FilesBelow(folder)) files.push_back(file.path);
+  return cache.HashOfFiles(folder, files);
+}
+
+/// What decides the last digits besides the sources of the method.
+std::string LibrariesHash() {
+  ContentHash hash;
+  for (const auto& [library, version] : LibraryVersions()) {
+    hash.Add(library).Add(version);
+  }
+  return hash.Hex();
+}
+
+void SetFlag(const std::string& key, const std::string& value) {
+  gflags::CommandLineFlagInfo flag;
+  const bool known = gflags::GetCommandLineFlagInfo(key.c_str(), &flag) &&
+                     IsRunFlag(flag) && key != "set" && key != "output";
+  if (!known) {
+    throw InputError("--set: key '" + key +
+                     "': expected a flag of sf_run, or terms.NAME.weight, "
+                     "loss or scale");
+  }
+  if (gflags::SetCommandLineOption(key.c_str(), value.c_str()).empty()) {
+    throw InputError("--set: " + key + " = " + value + ": expected a value " +
+                     "of type " + flag.type);
+  }
+}
+
+}  // namespace
+
+void ApplySetFlag() {
+  if (FLAGS_set.empty()) return;
+  const Settings settings = ParseSettings(FLAGS_set, "set");
+  for (const auto& [key, value] : settings.entries()) {
+    if (key.rfind("terms.", 0) != 0) SetFlag(key, value);
+  }
+  Energy energy = ParseEnergy(FLAGS_terms, BuiltinTerms());
+  bool changed = false;
+  for (const auto& [key, value] : settings.entries()) {
+    if (key.rfind("terms.", 0) != 0) continue;
+    SetTermOption(key.substr(6), value, BuiltinTerms(), &energy);
+    changed = true;
+  }
+  if (changed) FLAGS_terms = EnergyText(energy);
+  FLAGS_set.clear();  // The options that repeat the run have it resolved.
+}
+
+RunIdentity IdentityFromFlags(const TumReader& reader) {
+  const ContentCache cache(UserCacheFolder());
+  RunIdentity identity;
+  AddFlags(&identity);
+  AddTerms(&identity);
+  AddFrames(reader, cache, &identity);
+  identity.parts["input.masks"] = MasksHash(cache);
+  identity.parts["input.labels"] = FileHash(FLAGS_labels);
+  identity.parts["input.model"] = FileHash(FLAGS_model);
+  identity.parts["input.class_names"] = FileHash(FLAGS_class_names);
+  identity.parts["method"] = MethodHash();
+  identity.parts["libraries"] = LibrariesHash();
+  return identity;
+}
+
+std::string IdentityText(const RunIdentity& identity) {
+  return nlohmann::ordered_json{{"identity", identity.Hash()},
+                                {"identity_parts", identity.parts},
+                                {"outputs", identity.outputs}}
+             .dump(1, ' ', false,
+                   nlohmann::ordered_json::error_handler_t::replace) +
+         "\n";
+}
+
+}  // namespace splitfusion

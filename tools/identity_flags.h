@@ -1,0 +1,27 @@
+#ifndef SPLITFUSION_TOOLS_IDENTITY_FLAGS_H_
+#define SPLITFUSION_TOOLS_IDENTITY_FLAGS_H_
+
+#include "splitfusion/lib/report/run_identity.h"
+#include "splitfusion/lib/sequence/tum_reader.h"
+
+namespace splitfusion {
+
+/// Applies --set: flags of sf_run, and terms.NAME.KEY for one option of the
+/// energy. Before any other flag is read.
+///
+/// @throw InputError if a key or value is unknown.
+void ApplySetFlag();
+
+/// What decides the result of a run of these flags: the options of the method,
+/// the contents of images, calibration, masks, labels and network, the method
+/// itself and the libraries under it.
+///
+/// @throw InputError if something that the flags name cannot be read.
+RunIdentity IdentityFromFlags(const TumReader& reader);
+
+/// {"identity", "identity_parts", "outputs"}, for programs.
+std::string IdentityText(const RunIdentity& identity);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_TOOLS_IDENTITY_FLAGS_H_
