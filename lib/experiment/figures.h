@@ -43,8 +43,8 @@ struct Figures {
 /// Reads the figures of RUN/summary.json and, if `evaluated`, of the headline
 /// of RUN/evaluation.json.
 ///
-/// @throw InputError if one of them is not what the programs write, or has
-///     another size than RUN/run.json says.
+/// @throw InputError if one of them is not what the programs write, or not as
+///     RUN/run.json says.
 Figures ReadFigures(const std::string& run, bool evaluated);
 
 /// An object of the figures that are known.

@@ -42,9 +42,9 @@ std::string RecordedStatus(const TaskRecord& record, const RunState& state,
     case TaskState::kComplete:
       break;
   }
-  if (!state.exists) return "damaged: run.json: missing";
-  if (state.status == "damaged") return "damaged: run.json: expected JSON";
-  const bool same = state.IsComplete() && state.id == record.run_id;
+  if (!state.Exists()) return "damaged: run.json: missing";
+  if (!state.marker) return "damaged: " + state.damage;
+  const bool same = state.IsComplete() && state.Id() == record.run_id;
   const bool left = record.state == TaskState::kChecking && IsLeft(run);
   return same && !left ? "complete" : "unfinished";
 }
@@ -52,13 +52,14 @@ std::string RecordedStatus(const TaskRecord& record, const RunState& state,
 /// Status of a task by its run directory alone.
 std::string BareStatus(const RunState& state, const std::string& folder) {
   std::error_code ignored;
-  if (!state.exists) {
+  if (!state.Exists()) {
     return fs::exists(fs::path(folder) / "task.json", ignored)
                ? "damaged: task.json: expected what sf_batch writes"
                : "waiting";
   }
-  if (state.status == "damaged") return "damaged: run.json: expected JSON";
-  return state.status == "running" ? "unfinished" : state.status;
+  if (!state.marker) return "damaged: " + state.damage;
+  const RunStatus status = state.marker->status;
+  return status == RunStatus::kRunning ? "unfinished" : ToString(status);
 }
 
 void FillFigures(const std::string& run, const TaskRecord& record,
@@ -90,8 +91,14 @@ ResultRow ReadRow(const ExperimentFolder& folder, const Task& task) {
   const RunState state = ReadRunState(run);
   ResultRow row;
   row.task = record ? record->task : task;
-  row.error = record ? record->Error() : state.error;
-  row.identity = record ? record->identity : state.identity.identity;
+  if (state.marker) {
+    row.error = state.marker->error;
+    row.identity = state.marker->identity.Hash();
+  }
+  if (record) {
+    row.error = record->Error();
+    row.identity = record->identity;
+  }
   row.wall_seconds = record ? record->wall_seconds : 0;
   if (LivingHolder(folder.Lock(task.name))) {
     row.status = "running";

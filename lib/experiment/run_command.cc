@@ -37,8 +37,7 @@ std::string JoinedOptions(const std::vector<std::string>& options) {
 
 }  // namespace
 
-Settings ShiftVoxels(const std::map<std::string, std::string>& parts,
-                     int repeat) {
+Settings ShiftVoxels(const NamedValues& parts, int repeat) {
   Settings settings;
   if (repeat == 0) return settings;
   for (const char* key : {"object_voxel", "background_voxel"}) {
@@ -105,8 +104,8 @@ std::vector<std::string> RunCommand::Run(const Task& task,
 
 namespace {
 
-RunIdentityText AskProgram(std::vector<std::string> arguments,
-                           const std::string& sequence) {
+RunIdentity AskProgram(std::vector<std::string> arguments,
+                       const std::string& sequence) {
   const ScratchFolder folder;
   arguments.push_back("--print_identity");
   arguments.push_back("--sequence=" + sequence);
@@ -117,18 +116,19 @@ RunIdentityText AskProgram(std::vector<std::string> arguments,
                          ? arguments.front() + " --print_identity: failed"
                          : child.LastLine());
   }
-  RunIdentityText identity =
-      IdentityFromJson(ReadJsonOrNull(folder.path() + "/ask.log"));
-  if (identity.identity.empty()) {
+  try {
+    const Json json = Json::parse(std::ifstream(folder.path() + "/ask.log"));
+    return {json.at("identity_parts").get<NamedValues>(),
+            json.at("outputs").get<NamedValues>()};
+  } catch (const Json::exception&) {
     throw InputError(arguments.front() +
-                     " --print_identity: expected JSON with an identity");
+                     " --print_identity: expected JSON with identity_parts");
   }
-  return identity;
 }
 
 }  // namespace
 
-RunIdentityText RunCommand::AskPlain(const Task& task) const {
+RunIdentity RunCommand::AskPlain(const Task& task) const {
   const std::vector<std::string> arguments = Plain(task);
   const std::string key =
       task.sequence_folder + '\n' + JoinedOptions(arguments);
@@ -137,12 +137,12 @@ RunIdentityText RunCommand::AskPlain(const Task& task) const {
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
   }
-  RunIdentityText identity = AskProgram(arguments, task.sequence_folder);
+  RunIdentity identity = AskProgram(arguments, task.sequence_folder);
   const std::lock_guard<std::mutex> lock(mutex_);
   return known_[key] = std::move(identity);
 }
 
-RunIdentityText RunCommand::Ask(const Task& task) const {
+RunIdentity RunCommand::Ask(const Task& task) const {
   if (task.repeat == 0) return AskPlain(task);
   return AskProgram(Options(task), task.sequence_folder);
 }

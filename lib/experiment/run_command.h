@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/experiment/run_state.h"
 #include "splitfusion/lib/experiment/task.h"
+#include "splitfusion/lib/report/run_identity.h"
 
 namespace splitfusion {
 
@@ -34,7 +34,7 @@ class RunCommand {
   /// What decides a task's result: the answer of `sf_run --print_identity`.
   ///
   /// @throw InputError with the last line of sf_run if that refuses.
-  RunIdentityText Ask(const Task& task) const;
+  RunIdentity Ask(const Task& task) const;
 
   /// Whether sf_run takes the options of all tasks, each set of options asked
   /// once, on the first sequence that can be read.
@@ -44,14 +44,14 @@ class RunCommand {
 
  private:
   std::vector<std::string> Plain(const Task& task) const;
-  RunIdentityText AskPlain(const Task& task) const;
+  RunIdentity AskPlain(const Task& task) const;
   bool CanBeRead(const Task& task) const;
 
   std::string run_program_;
   int threads_;
   mutable std::mutex mutex_;
   /// Identities of undisturbed tasks, by the options' text and the sequence.
-  mutable std::map<std::string, RunIdentityText> known_;
+  mutable std::map<std::string, RunIdentity> known_;
 };
 
 /// Settings that move the voxels of a repeat: `object_voxel` and
@@ -60,8 +60,7 @@ class RunCommand {
 ///
 /// @param parts what sf_run says of the undisturbed run.
 /// @throw InputError if the voxel sizes are not in `parts`.
-Settings ShiftVoxels(const std::map<std::string, std::string>& parts,
-                     int repeat);
+Settings ShiftVoxels(const NamedValues& parts, int repeat);
 
 }  // namespace splitfusion
 

@@ -1,46 +1,40 @@
 #ifndef SPLITFUSION_LIB_EXPERIMENT_RUN_STATE_H_
 #define SPLITFUSION_LIB_EXPERIMENT_RUN_STATE_H_
 
-#include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+
+#include "splitfusion/lib/report/run_marker.h"
 
 namespace splitfusion {
 
-/// What decides the result of a run, as sf_run tells it.
-struct RunIdentityText {
-  std::string identity;                        ///< Hash of all parts.
-  std::map<std::string, std::string> parts;    ///< Resolved options, inputs.
-  std::map<std::string, std::string> outputs;  ///< What is written of it.
-};
-
-/// The marker of a run directory, RUN/run.json.
+/// What a run directory says of itself, however damaged it is.
 struct RunState {
-  bool exists = false;       ///< Whether there is one.
-  std::string id;            ///< Of this very run; empty if unknown.
-  std::string status;        ///< "complete" is the only success.
-  std::string error;         ///< Of a run that failed.
-  bool resumed = false;      ///< Whether it went on from a checkpoint.
-  RunIdentityText identity;  ///< Of the result.
-  std::map<std::string, double> bytes;  ///< Size of every file, by path.
+  std::optional<RunMarker>
+      marker;          ///< Empty if there is none, or a broken one.
+  std::string damage;  ///< What is wrong with the marker.
 
-  bool IsComplete() const { return status == "complete"; }
+  /// Whether the run has succeeded.
+  bool IsComplete() const {
+    return marker && marker->status == RunStatus::kComplete;
+  }
+  /// Id of the run; empty if it is unknown.
+  std::string Id() const { return marker ? marker->id : ""; }
+  /// Whether there is a marker, of whatever kind.
+  bool Exists() const { return marker || !damage.empty(); }
 };
+
+/// Reads RUN/run.json.
+RunState ReadRunState(const std::string& run);
+
+/// Why the marker's files that tables are made of cannot be trusted: the first
+/// of summary.json and evaluation.json that is not as it was written; empty if
+/// there is nothing against them.
+std::string FileDamage(const RunState& state, const std::string& run);
 
 /// A JSON file; null if it is missing or broken.
 nlohmann::ordered_json ReadJsonOrNull(const std::string& path);
-
-/// Reads RUN/run.json; a broken one has the status "damaged".
-RunState ReadRunState(const std::string& run);
-
-/// The identity of a JSON object with `identity`, `identity_parts` and
-/// `outputs`; what is missing or of another type is left out.
-RunIdentityText IdentityFromJson(const nlohmann::ordered_json& json);
-
-/// "terms.arap.weight 8 -> 4, ...": the first differences between two
-/// identities; empty if there are none.
-std::string Differences(const RunIdentityText& before,
-                        const RunIdentityText& after);
 
 }  // namespace splitfusion
 

@@ -92,6 +92,16 @@ std::vector<Task> PlanTasks(const Experiment& experiment) {
   return tasks;
 }
 
+Task MakeForeignTask(const Task& task, const std::string& system) {
+  Task foreign;
+  foreign.sequence = task.sequence;
+  foreign.sequence_folder = task.sequence_folder;
+  foreign.ground_truth = task.ground_truth;
+  foreign.row = system;
+  foreign.name = TaskName(foreign);
+  return foreign;
+}
+
 Json ToJson(const Task& task) {
   return {{"task", task.name},
           {"sequence", task.sequence},

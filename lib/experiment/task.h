@@ -31,6 +31,9 @@ struct Task {
 /// @throw InputError as Experiment::Check().
 std::vector<Task> PlanTasks(const Experiment& experiment);
 
+/// The row of another system on the sequence of a task, without options.
+Task MakeForeignTask(const Task& task, const std::string& system);
+
 /// What TaskFromJson() reads back.
 nlohmann::ordered_json ToJson(const Task& task);
 

@@ -5,6 +5,7 @@
 
 #include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/experiment/run_state.h"
 
 namespace splitfusion {
 namespace {
@@ -99,12 +100,12 @@ TaskResult TaskRunner::Run(const Task& task, int known_attempts) const {
 
 bool TaskRunner::TakeRecorded(TaskRecord* record) const try {
   const Task& task = record->task;
-  const bool has_run = ReadRunState(folder_.Run(task.name)).exists;
+  const bool has_run = ReadRunState(folder_.Run(task.name)).Exists();
   const bool was_recorded = record->state == TaskState::kRecorded;
   if (options_.overwrite || has_run || (rows_.empty() && !was_recorded)) {
     return false;
   }
-  const std::string identity = command_.Ask(task).identity;
+  const std::string identity = command_.Ask(task).Hash();
   if (was_recorded && record->identity == identity) return true;
   const RowFile::Row* row = rows_.Find(identity);
   if (row == nullptr) return false;
@@ -147,21 +148,22 @@ bool TaskRunner::Reconstruct(TaskRecord* record, TaskResult* result) const {
   }
   if (!Accept(child, record)) return false;
   const RunState after = ReadRunState(run);
-  result->kept = before.IsComplete() && before.id == after.id;
+  result->kept = before.IsComplete() && before.Id() == after.Id();
   if (!result->kept) {
     record->wall_seconds = child.wall_seconds;
-    record->cpu_seconds = after.resumed ? 0 : child.cpu_seconds;
+    record->cpu_seconds =
+        !after.marker->resumed_at.empty() ? 0 : child.cpu_seconds;
     record->peak_memory_bytes = child.peak_memory_bytes;
     record->reason.clear();
     if (before.IsComplete()) {
-      record->reason = damage.empty()
-                           ? Differences(before.identity, after.identity)
-                           : damage;
+      record->reason = damage.empty() ? Differences(before.marker->identity,
+                                                    after.marker->identity)
+                                      : damage;
       if (record->reason.empty()) record->reason = "--overwrite";
     }
   }
-  record->run_id = after.id;
-  record->identity = after.identity.identity;
+  record->run_id = after.Id();
+  record->identity = after.marker->identity.Hash();
   return true;
 }
 
@@ -171,8 +173,7 @@ bool TaskRunner::Accept(const ChildResult& child, TaskRecord* record) const {
   const bool asked = stop_ && stop_() != Stop::kNo;
   std::vector<std::string> lines = child.last_lines;
   if (child.exit_code == 0) {
-    lines.push_back("run.json: expected the status complete, not '" +
-                    state.status + "'");
+    lines.push_back("run.json: expected a complete run");
   }
   Fail(asked ? TaskState::kStarted : TaskState::kFailed,
        child.exit_code == 0 ? 1 : child.exit_code, lines, record);
@@ -221,7 +222,7 @@ std::string WhatIsToDo(const ExperimentFolder& folder,
   if (LivingHolder(folder.Lock(task.name))) return "running";
   const RunState state = ReadRunState(folder.Run(task.name));
   if (record && record->state == TaskState::kRecorded) return "recorded";
-  if (!state.exists && !record) return "new";
+  if (!state.Exists() && !record) return "new";
   if (record && record->state == TaskState::kFailed) {
     return "failed: " + record->Error();
   }
@@ -229,7 +230,8 @@ std::string WhatIsToDo(const ExperimentFolder& folder,
   const std::string damage = DamageOf(folder.Run(task.name));
   if (!damage.empty()) return "damaged: " + damage;
   try {
-    const std::string why = Differences(state.identity, command.Ask(task));
+    const std::string why =
+        Differences(state.marker->identity, command.Ask(task));
     return why.empty() ? "finished" : "changed: " + why;
   } catch (const InputError& error) {
     return std::string("fails: ") + error.what();
