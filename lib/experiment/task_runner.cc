@@ -125,7 +125,7 @@ bool TaskRunner::Reconstruct(TaskRecord* record, TaskResult* result) const {
   const std::string run = folder_.Run(task.name);
   const RunState before = ReadRunState(run);
   const bool was_complete = before.IsComplete() &&
-                            before.id == record->run_id &&
+                            before.Id() == record->run_id &&
                             (record->state == TaskState::kComplete ||
                              record->state == TaskState::kUnevaluated ||
                              record->state == TaskState::kChecking);
