@@ -47,6 +47,18 @@ std::vector<Experiment> SavedExperiments(const ExperimentFolder& folder) {
   return experiments;
 }
 
+/// Files of somebody else would be replaced by the tables.
+void CheckOwn(const ExperimentFolder& folder) {
+  if (fs::is_directory(folder.Experiments())) return;
+  for (const char* name : {"results.csv", "results.sqlite", "summary.csv",
+                           "differences.csv", "progress.log", "tasks"}) {
+    if (!fs::exists(folder.Below(name))) continue;
+    throw InputError(folder.root() + ": holds a " + name +
+                     " of something else: expected the --output of an "
+                     "experiment, or a new folder");
+  }
+}
+
 void CheckSequence(const SequenceEntry& before, const SequenceEntry& now) {
   std::error_code ignored;
   const bool other = before.name == now.name && before.folder != now.folder &&
@@ -89,6 +101,7 @@ std::string ExperimentFolder::Lock(const std::string& task) const {
 
 void AddExperiment(const ExperimentFolder& folder,
                    const Experiment& experiment) {
+  CheckOwn(folder);
   for (const Experiment& saved : SavedExperiments(folder)) {
     for (const SequenceEntry& before : saved.sequences) {
       for (const SequenceEntry& now : experiment.sequences) {
@@ -113,7 +126,8 @@ void AddExperiment(const ExperimentFolder& folder,
 }
 
 std::vector<Task> KnownTasks(const ExperimentFolder& folder) {
-  if (!fs::is_directory(folder.root())) {
+  if (!fs::is_directory(folder.Experiments()) &&
+      !fs::is_directory(folder.Tasks())) {
     throw InputError(folder.root() +
                      ": not found; expected the --output of sf_batch run");
   }

@@ -114,7 +114,8 @@ bool Varies(const Column& column) {
 
 /// What tells the lines apart: sequence, varied keys, number of runs.
 std::vector<Column> NameColumns(const ResultTable& table,
-                                const std::vector<ResultGroup>& groups) {
+                                const std::vector<ResultGroup>& groups,
+                                bool all_keys) {
   std::vector<Column> columns = {{"sequence", {}, true}};
   for (const ResultGroup& group : groups) {
     columns[0].cells.push_back(group.sequence);
@@ -124,7 +125,7 @@ std::vector<Column> NameColumns(const ResultTable& table,
     for (const ResultGroup& group : groups) {
       column.cells.push_back(group.values[i].empty() ? "-" : group.values[i]);
     }
-    if (Varies(column)) columns.push_back(column);
+    if (all_keys || Varies(column)) columns.push_back(column);
   }
   Column runs{"n", {}, false};
   for (const ResultGroup& group : groups) {
@@ -234,7 +235,7 @@ std::string PrintedSummary(const ResultTable& table,
       std::any_of(groups.begin(), groups.end(),
                   [](const ResultGroup& group) { return group.planned > 1; });
   std::string text =
-      Fitted(NameColumns(table, groups),
+      Fitted(NameColumns(table, groups, /*all_keys=*/false),
              FigureColumns(groups, /*differences=*/false), width);
   if (repeated) {
     text += Wrapped("Mean +- standard deviation over n repeats.", width);
@@ -248,7 +249,7 @@ std::string PrintedDifferences(const ResultTable& table,
   if (groups.empty()) {
     return Wrapped("Nothing to compare with " + baseline + ".", width);
   }
-  std::vector<Column> names = NameColumns(table, groups);
+  std::vector<Column> names = NameColumns(table, groups, /*all_keys=*/true);
   Column seconds{"s/run", {}, false};
   for (const ResultGroup& group : groups) {
     seconds.cells.push_back(
