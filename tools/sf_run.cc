@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "identity_flags.h"
 #include "interruption.h"
@@ -100,15 +101,23 @@ RunFolder OpenRunFolder(const RunIdentity& identity) {
 
 /// Frames in and surfaces out: what a run computes.
 struct Reconstruction {
-  explicit Reconstruction(const TumReaderOptions& reading,
-                          const PipelineOptions& options)
+  /// All images are looked at first.
+  Reconstruction(const TumReaderOptions& reading,
+                 const PipelineOptions& options)
       : reader(FLAGS_sequence, reading),
-        fusion(reader.camera(), options, LabelsFromFlags(),
+        fusion(Checked(reader, reading).camera(), options, LabelsFromFlags(),
                SegmenterFromFlags(reader, options,
                                   RunPaths(FLAGS_output).Unfinished())) {}
 
   TumReader reader;
   SplitFusion fusion;
+
+ private:
+  static const TumReader& Checked(const TumReader& reader,
+                                  const TumReaderOptions& reading) {
+    if (!reading.skip_bad_frames) reader.CheckFrames();
+    return reader;
+  }
 };
 
 /// One run: frames in, run directory out.
@@ -180,6 +189,22 @@ class Run {
     LOG(INFO) << FLAGS_output << ": goes on after " << done_ << " of "
               << work_->reader.size() << " frames";
     return true;
+  }
+
+  /// Indices of frames without usable images.
+  std::vector<int> SkippedFrames() const {
+    std::vector<int> frames;
+    for (const BadFrame& bad : work_->reader.skipped()) {
+      frames.push_back(bad.index);
+    }
+    return frames;
+  }
+
+  void WarnOfSkippedFrames() const {
+    const std::vector<BadFrame> skipped = work_->reader.skipped();
+    if (skipped.empty()) return;
+    LOG(WARNING) << skipped.size() << " frames are left out, the first: "
+                 << skipped.front().reason;
   }
 
   /// All that later frames and results depend on.
@@ -343,7 +368,9 @@ class Run {
           static_cast<int>(surface->mesh().vertices.size()));
     }
     directory_->AddWritingSeconds(writing.Seconds());
-    directory_->Finish({status, error, folder_.marker().resumed_at});
+    directory_->Finish(
+        {status, error, folder_.marker().resumed_at, SkippedFrames()});
+    WarnOfSkippedFrames();
     const RunSummary summary = directory_->Summary();
     const bool published = folder_.Publish(status, error);
     where_ = published ? FLAGS_output : folder_.unfinished().root();

@@ -149,6 +149,7 @@ void RunDirectory::Finish(const RunEnding& ending) const {
   facts.status = ToString(ending.status);
   facts.error = ending.error;
   facts.resumed_at = ending.resumed_at;
+  facts.skipped_frames = ending.skipped_frames;
   const nlohmann::ordered_json summary = ToJson(facts);
   WriteHtmlReport(paths_, summary);
   WriteText(paths_.Summary(), JsonText(summary, 2) + "\n");

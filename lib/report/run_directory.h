@@ -27,6 +27,7 @@ struct RunEnding {
   RunStatus status = RunStatus::kComplete;  ///< Only this is a success.
   std::string error;                        ///< Of a failed run, one line.
   std::vector<int> resumed_at;              ///< Frames from which it went on.
+  std::vector<int> skipped_frames;          ///< Left out: images not usable.
 };
 
 /// Whether the summary of a run is there and says that it is complete.

@@ -93,6 +93,7 @@ Json ToJson(const RunSummary& summary) {
           {"status", summary.status},
           {"error", summary.error},
           {"resumed_at", summary.resumed_at},
+          {"skipped_frames", summary.skipped_frames},
           {"preset", summary.preset},
           {"frames", summary.frames},
           {"verdict", VerdictLine(summary)},

@@ -46,6 +46,7 @@ struct RunSummary {
   std::string status = "complete";  ///< ToString(RunStatus).
   std::string error;                ///< Of a failed run, one line.
   std::vector<int> resumed_at;      ///< Frames from which the run went on.
+  std::vector<int> skipped_frames;  ///< Left out: images not usable.
   std::string preset;    ///< Name of the preset.
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.

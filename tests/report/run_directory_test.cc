@@ -103,7 +103,7 @@ TEST(RunDirectory, TheSummarySaysWhetherTheRunIsComplete) {
   EXPECT_FALSE(IsComplete(paths));
   const RunDirectory run(folder / "run", Facts());
   EXPECT_FALSE(IsComplete(paths));
-  run.Finish({RunStatus::kIncomplete, "", {}});
+  run.Finish({RunStatus::kIncomplete, "", {}, {}});
   EXPECT_FALSE(IsComplete(paths));
   run.Finish();
   EXPECT_TRUE(IsComplete(paths));

@@ -124,7 +124,7 @@ TEST_F(SfRun, IsEvaluatedAndRepeatedByItsOwnFlagfile) {
   }
 }
 
-TEST_F(SfRun, ABrokenFrameEndsTheRunAndKeepsWhatWasComputed) {
+TEST_F(SfRun, ABrokenFrameIsFoundBeforeTheFirstOne) {
   Synthesize();
   std::vector<fs::path> images;
   for (const auto& entry : fs::directory_iterator(folder_ / "sequence/depth")) {
@@ -132,6 +132,31 @@ TEST_F(SfRun, ABrokenFrameEndsTheRunAndKeepsWhatWasComputed) {
   }
   std::sort(images.begin(), images.end());
   fs::resize_file(images.at(2), fs::file_size(images.at(2)) / 2);
+  const ProgramResult refused = Run("run", "--pictures_every=0");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr(images.at(2).filename().string()));
+  EXPECT_FALSE(folder_.Has("run"));
+  const ProgramResult skipped =
+      Run("skipped", "--pictures_every=0 --skip_bad_frames");
+  EXPECT_EQ(skipped.exit_code, 0) << skipped.errors;
+  EXPECT_THAT(skipped.errors, HasSubstr("1 frames are left out"));
+  const auto json = nlohmann::json::parse(folder_.Read("skipped/summary.json"));
+  EXPECT_EQ(json["skipped_frames"], nlohmann::json::array({2}));
+  EXPECT_EQ(json["frames"], 3);
+}
+
+TEST_F(SfRun, AFrameThatCannotBeDecodedEndsTheRunAndKeepsWhatWasComputed) {
+  Synthesize();
+  std::vector<fs::path> images;
+  for (const auto& entry : fs::directory_iterator(folder_ / "sequence/depth")) {
+    images.push_back(entry.path());
+  }
+  std::sort(images.begin(), images.end());
+  // Head and end are whole, what is between is not.
+  std::fstream image(images.at(2), std::ios::in | std::ios::out);
+  image.seekp(fs::file_size(images.at(2)) / 2);
+  image << std::string(200, 'x');
+  image.close();
   const ProgramResult result = Run("run", "--pictures_every=0");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.errors, HasSubstr(images.at(2).filename().string()));
