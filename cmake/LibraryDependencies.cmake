@@ -25,5 +25,6 @@ find_dependency(Ceres 2.1 COMPONENTS SuiteSparse)
 find_dependency(OpenCV 4.5 COMPONENTS core imgproc imgcodecs dnn)
 find_dependency(PCL 1.12 COMPONENTS common kdtree)
 find_dependency(nlohmann_json 3.11)
+find_dependency(SQLite3 3)
 
 set(CMAKE_MESSAGE_LOG_LEVEL "${splitfusion_log_level}")

@@ -7,7 +7,8 @@ packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
   libceres-dev libeigen3-dev libsuitesparse-dev libopenblas0-pthread
   libopencv-dev libpcl-dev libopenvdb-dev libtbb-dev
-  libgflags-dev libgoogle-glog-dev nlohmann-json3-dev libxxhash-dev
+  libgflags-dev libgoogle-glog-dev nlohmann-json3-dev libsqlite3-dev
+  libxxhash-dev
   libgtest-dev libgmock-dev libbenchmark-dev doxygen python3-onnx
 )
 

@@ -1,98 +1,296 @@
-// Runs sf_run and sf_evaluate over many sequences and option files.
+// Runs sf_run and sf_evaluate over sequences and options, and tabulates them.
 
 #include <gflags/gflags.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "interruption.h"
 #include "progress_line.h"
-#include "splitfusion/pipelines/batch.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/experiment/foreign_results.h"
+#include "splitfusion/lib/experiment/printed_table.h"
+#include "splitfusion/lib/experiment/result_files.h"
+#include "splitfusion/lib/experiment/result_statistics.h"
+#include "splitfusion/lib/experiment/result_table.h"
+#include "splitfusion/lib/experiment/sequence_list.h"
+#include "splitfusion/lib/experiment/sweep.h"
 #include "tool_main.h"
 
-DEFINE_string(sequences, "",
-              "Sequence folders and list files (one folder a line, relative "
-              "to the list, # comments), separated by commas.");
-DEFINE_string(options, "",
-              "Flagfiles of sf_run, separated by commas; every sequence is run "
-              "with every file. Empty: once with the defaults.");
-DEFINE_string(output, "",
-              "Folder of the batch: run directories OUTPUT/SEQUENCE/OPTIONS, "
-              "summary.csv, summary.json.");
+DEFINE_string(sequences, "", "Folders or list files (one folder a line).");
+DEFINE_string(grid, "", "What varies: \"KEY=V,V; KEY=V,V\".");
+DEFINE_string(set, "", "Options of all runs: \"KEY=V; KEY=V\".");
+DEFINE_int32(repeat, 0, "Runs of each, voxels moved by millionths; 0 = 1.");
+DEFINE_string(experiment, "", "JSON file of all that (docs/experiments.md).");
+DEFINE_string(output, "", "Folder of the experiment.");
+DEFINE_int32(random, 0, "Random points; --grid: lo..hi, log:lo..hi, lists.");
+DEFINE_int32(seed, 1, "Of --random.");
+DEFINE_string(ground_truth, "auto", "auto, none, or a folder.");
+DEFINE_string(evaluate, "", "Flags of sf_evaluate: \"KEY=V; KEY=V\".");
 DEFINE_int32(jobs, 1, "Runs at the same time.");
-DEFINE_string(ground_truth, "auto",
-              "auto (SEQ/gt or SEQ, where groundtruth.txt is), none, or a "
-              "folder with one folder per sequence name.");
-DEFINE_bool(overwrite, false,
-            "Repeat runs that are finished (have a summary.json).");
+DEFINE_int32(threads, 0, "Of a run; 0 = cores / jobs.");
+DEFINE_double(max_wall_minutes, 0, "Of a run, then it is killed; 0 = any.");
+DEFINE_double(max_cpu_minutes, 0, "The same, of all its threads.");
+DEFINE_double(max_memory_gb, 0, "The same, resident, 1e9 bytes.");
+DEFINE_bool(fail_fast, false, "Start nothing after a failure.");
+DEFINE_bool(keep_failed, false, "Do not try failed runs again.");
+DEFINE_bool(overwrite, false, "Repeat finished runs.");
+DEFINE_bool(dry_run, false, "Print what would be done, and why.");
+DEFINE_string(rows_csv, "", "Finished rows; run: are done, collect: added.");
+DEFINE_string(baseline, "", "Row or \"KEY=V\" that differences refer to.");
+DEFINE_string(foreign, "", "\"NAME:SEQUENCE=TRAJECTORY[,MESH.ply]; ...\".");
+DEFINE_string(run_program, "", "Another sf_run than the one beside this.");
+DEFINE_string(evaluate_program, "", "Another sf_evaluate.");
 
 namespace splitfusion {
 namespace {
 
-/// A program beside this one.
-std::string Beside(const std::string& name) {
+constexpr char kUsage[] =
+    "Runs many sequences with many options, and tabulates them.\n"
+    "  sf_batch run --sequences=DIR,DIR --output=DIR\n"
+    "               [--grid=\"terms.arap.weight=4,8\"] [--repeat=N] "
+    "[--jobs=N]\n"
+    "  sf_batch status --output=DIR     what is done, what failed\n"
+    "  sf_batch collect --output=DIR    tables: results.csv, results.sqlite\n"
+    "KEY: a flag of sf_run, or terms.NAME.KEY; V with , or ; in double "
+    "quotes.\n";
+
+/// A program beside this one, unless a flag names another.
+std::string Program(const std::string& flag, const std::string& name) {
+  if (!flag.empty()) return flag;
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name)
       .string();
 }
 
-BatchOptions OptionsFromFlags() {
-  BatchOptions options;
-  options.run_program = Beside("sf_run");
-  options.evaluate_program = Beside("sf_evaluate");
-  options.sequences = ReadSequences(FLAGS_sequences);
-  options.option_files = SplitAtCommas(FLAGS_options);
+int Cores() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// The experiment of --experiment, with what the other flags add to it.
+Experiment ExperimentFromFlags() {
+  Experiment experiment;
+  if (!FLAGS_experiment.empty()) experiment = ReadExperiment(FLAGS_experiment);
+  if (!FLAGS_sequences.empty()) {
+    experiment.sequences = ReadSequences(FLAGS_sequences, FLAGS_ground_truth);
+  }
+  experiment.set.SetAll(ParseSettings(FLAGS_set, "set"));
+  for (const Axis& axis : ParseGrid(FLAGS_grid, "grid")) {
+    const auto same =
+        std::find_if(experiment.grid.begin(), experiment.grid.end(),
+                     [&](const Axis& other) { return other.key == axis.key; });
+    if (same == experiment.grid.end()) {
+      experiment.grid.push_back(axis);
+    } else {
+      *same = axis;
+    }
+  }
+  if (FLAGS_random != 0) {
+    experiment.random = FLAGS_random;
+    experiment.seed = static_cast<std::uint64_t>(FLAGS_seed);
+  }
+  if (FLAGS_repeat != 0) experiment.repeat = FLAGS_repeat;
+  if (!FLAGS_baseline.empty()) experiment.baseline = FLAGS_baseline;
+  experiment.evaluate.SetAll(ParseSettings(FLAGS_evaluate, "evaluate"));
+  return experiment;
+}
+
+SweepOptions SweepOptionsFromFlags(const Experiment& experiment) {
+  constexpr double kMinute = 60, kGigabyte = 1e9;
+  SweepOptions options;
+  options.run_program = Program(FLAGS_run_program, "sf_run");
   options.output = FLAGS_output;
   options.jobs = FLAGS_jobs;
-  options.ground_truth = FLAGS_ground_truth;
-  options.overwrite = FLAGS_overwrite;
+  options.threads = FLAGS_threads;
+  if (FLAGS_threads == 0) {
+    options.threads = std::max(1, Cores() / std::max(1, FLAGS_jobs));
+  }
+  for (const Axis& axis : experiment.grid) {
+    if (axis.key == "threads") options.threads = 0;
+  }
+  options.fail_fast = FLAGS_fail_fast;
+  options.row_file = FLAGS_rows_csv;
+  options.runner.evaluate_program =
+      Program(FLAGS_evaluate_program, "sf_evaluate");
+  options.runner.limits.wall_seconds = FLAGS_max_wall_minutes * kMinute;
+  options.runner.limits.cpu_seconds = FLAGS_max_cpu_minutes * kMinute;
+  options.runner.limits.memory_bytes =
+      static_cast<std::int64_t>(FLAGS_max_memory_gb * kGigabyte);
+  options.runner.overwrite = FLAGS_overwrite;
+  options.runner.keep_failed = FLAGS_keep_failed;
+  options.Check();
   return options;
 }
 
-void PrintProgress(const BatchProgress& progress) {
-  const BatchResult& last = progress.last;
-  ShowProgress(progress.done, progress.total,
-               "runs, " + last.run.sequence + " " + last.run.options +
-                   (last.exit_code == 0 ? " done" : " FAILED"),
-               progress.seconds_left);
+/// Of the terminal: COLUMNS, or what it says, or 80.
+std::size_t Width() {
+  constexpr std::size_t kDefault = 80, kLeast = 20;
+  if (const char* columns = std::getenv("COLUMNS")) {
+    const long width = std::strtol(columns, nullptr, 10);
+    if (width > 0) return std::max(kLeast, static_cast<std::size_t>(width));
+  }
+  winsize size = {};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+    return std::max<std::size_t>(kLeast, size.ws_col);
+  }
+  return kDefault;
 }
+
+/// Shows the progress as one line on a terminal, and otherwise as lines, not
+/// more often than every few seconds.
+class ProgressLines {
+ public:
+  void Show(const SweepProgress& progress) {
+    constexpr double kSecondsBetween = 5;
+    if (isatty(STDERR_FILENO)) {
+      ShowProgress(progress.done, progress.total,
+                   "runs, " + progress.last.record.task.name,
+                   progress.seconds_left);
+      return;
+    }
+    const bool due = progress.done == progress.total || !said_ ||
+                     since_.Seconds() > kSecondsBetween;
+    if (!due) return;
+    std::cerr << progress.ToString() << '\n';
+    since_.Restart();
+    said_ = true;
+  }
+
+ private:
+  Stopwatch since_;
+  bool said_ = false;
+};
 
 Stop WantedStop() {
   if (InterruptedTwice()) return Stop::kAtOnce;
   return Interrupted() ? Stop::kWhenReady : Stop::kNo;
 }
 
-int Run() {
-  CatchInterruption(SecondSignal::kIsTold);
-  const BatchOptions options = OptionsFromFlags();
-  const std::size_t planned = PlanBatch(options).size();
-  const auto results = RunBatch(options, PrintProgress, WantedStop);
-  const int failed = CountFailed(results);
-  const std::size_t finished = results.size() - failed;
-  if (Interrupted() && finished < planned) EndProgress();
-  std::cout << FormatBatchTable(results);
-  if (Interrupted() && finished < planned) {
-    throw std::runtime_error("interrupted after " + std::to_string(finished) +
-                             " of " + std::to_string(planned) +
-                             " runs; the same command goes on with the batch");
+/// Writes all tables and prints them.
+void Collect(const std::string& baseline_flag) {
+  const ExperimentFolder folder(FLAGS_output);
+  const ResultTable table = CollectResults(folder);
+  if (!FLAGS_rows_csv.empty()) AddToRowFile(table, FLAGS_rows_csv);
+  const std::vector<ResultGroup> groups = GroupResults(table);
+  std::vector<FileTable> files = {ResultsTable(table),
+                                  SummaryTable(table, groups)};
+  WriteCsv(folder.Below("results.csv"), files[0]);
+  WriteCsv(folder.Below("summary.csv"), files[1]);
+  std::cout << PrintedSummary(table, groups, Width());
+  std::string baseline = baseline_flag;
+  if (baseline.empty()) baseline = KnownBaseline(folder);
+  if (!baseline.empty()) {
+    const auto differences = CompareWithBaseline(table, baseline);
+    files.push_back(DifferencesTable(table, differences));
+    WriteCsv(folder.Below("differences.csv"), files[2]);
+    std::cout << '\n'
+              << PrintedDifferences(table, differences, baseline, Width());
   }
-  if (failed == 0) return kExitDone;
-  std::cerr << failed << " of " << results.size() << " runs failed; see "
-            << "the *.err.log files in their folders\n";
+  WriteSqlite(folder.Below("results.sqlite"), files);
+}
+
+int PrintDryRun(const Experiment& experiment, const SweepOptions& options) {
+  std::map<std::string, int> counts;
+  for (const auto& [task, what] : DryRun(experiment, options)) {
+    std::cout << task.name << "  " << what << '\n';
+    ++counts[what.substr(0, what.find(':'))];
+  }
+  std::string text;
+  for (const auto& [what, count] : counts) {
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  }
+  std::cout << text << '\n';
+  return kExitDone;
+}
+
+int RunExperiment() {
+  CatchInterruption(SecondSignal::kIsTold);
+  const Experiment experiment = ExperimentFromFlags();
+  const SweepOptions options = SweepOptionsFromFlags(experiment);
+  if (FLAGS_dry_run) return PrintDryRun(experiment, options);
+  if (options.jobs * std::max(1, options.threads) > Cores()) {
+    std::cerr << "sf_batch: warning: " << options.jobs << " jobs x "
+              << options.threads << " threads on " << Cores() << " cores\n";
+  }
+  ProgressLines lines;
+  const SweepOutcome outcome = RunSweep(
+      experiment, options,
+      [&](const SweepProgress& progress) { lines.Show(progress); }, WantedStop);
+  const bool stopped = Interrupted() && outcome.ended < outcome.planned;
+  if (outcome.ended < outcome.planned) EndProgress();
+  AddForeignResults(ExperimentFolder(FLAGS_output),
+                    ParseForeignResults(FLAGS_foreign));
+  Collect(experiment.baseline);
+  if (stopped) {
+    throw std::runtime_error(
+        "interrupted after " + std::to_string(outcome.ended) + " of " +
+        std::to_string(outcome.planned) +
+        " runs; the same command goes on with the experiment");
+  }
+  if (outcome.failed == 0) return kExitDone;
+  std::cerr << outcome.failed << " of " << outcome.planned
+            << " runs failed; see sf_batch status --output=" << FLAGS_output
+            << '\n';
   return kExitFailedRuns;
+}
+
+int PrintStatus() {
+  const ResultTable table = CollectResults(ExperimentFolder(FLAGS_output));
+  std::map<std::string, int> counts;
+  for (const ResultRow& row : table.rows) {
+    ++counts[row.status.substr(0, row.status.find(':'))];
+  }
+  std::cout << table.rows.size() << " runs";
+  for (const auto& [status, count] : counts) {
+    std::cout << ", " << count << ' ' << status;
+  }
+  std::cout << '\n';
+  for (const ResultRow& row : table.rows) {
+    if (row.IsComplete() || row.status == "waiting") continue;
+    std::cout << row.task.name << "  " << row.status
+              << (row.error.empty() ? "" : ": " + row.error) << '\n';
+  }
+  return kExitDone;
+}
+
+int CollectAll() {
+  AddForeignResults(ExperimentFolder(FLAGS_output),
+                    ParseForeignResults(FLAGS_foreign));
+  Collect(FLAGS_baseline);
+  return kExitDone;
+}
+
+int Execute(const std::string& command) {
+  CheckOption(!FLAGS_output.empty(), "output", "''",
+              "the folder of the experiment");
+  if (command == "run") return RunExperiment();
+  if (command == "status") return PrintStatus();
+  if (command == "collect") return CollectAll();
+  throw InputError("command '" + command +
+                   "': expected run, status or collect, see --help");
 }
 
 }  // namespace
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
+  std::string command;
+  std::vector<char*> rest(argv, argv + argc);
+  if (argc > 1 && argv[1][0] != '-') {
+    command = argv[1];
+    rest.erase(rest.begin() + 1);
+  }
+  rest.push_back(nullptr);
   return splitfusion::ToolMain(
-      argc, argv,
-      "Runs sf_run, and sf_evaluate where there is a ground truth, for every\n"
-      "sequence with every option file.\n"
-      "  sf_batch --sequences=list.txt|DIR,DIR --output=DIR\n"
-      "           [--options=a.flags,b.flags] [--jobs=N]\n",
-      splitfusion::Run);
+      static_cast<int>(rest.size()) - 1, rest.data(), splitfusion::kUsage,
+      [&command] { return splitfusion::Execute(command); });
 }

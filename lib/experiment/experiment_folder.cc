@@ -1,0 +1,157 @@
+#include "splitfusion/lib/experiment/experiment_folder.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/experiment/design.h"
+#include "splitfusion/lib/experiment/run_state.h"
+#include "splitfusion/lib/experiment/task_record.h"
+#include "splitfusion/lib/report/report_json.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names of the entries of a folder, sorted; none if it is missing.
+std::vector<std::string> Entries(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Experiments as they were run; files that are damaged are left out, since
+/// their tasks have records of their own. Folders of sequences may be gone.
+std::vector<Experiment> SavedExperiments(const ExperimentFolder& folder) {
+  std::vector<Experiment> experiments;
+  for (const std::string& name : Entries(folder.Experiments())) {
+    const fs::path path = fs::path(folder.Experiments()) / name;
+    if (path.extension() != ".json") continue;
+    try {
+      experiments.push_back(SavedExperiment(ReadJsonOrNull(path.string())));
+    } catch (const InputError&) {
+      continue;
+    }
+  }
+  return experiments;
+}
+
+/// Files of somebody else would be replaced by the tables.
+void CheckOwn(const ExperimentFolder& folder) {
+  if (fs::is_directory(folder.Experiments())) return;
+  for (const char* name : {"results.csv", "results.sqlite", "summary.csv",
+                           "differences.csv", "progress.log", "tasks"}) {
+    if (!fs::exists(folder.Below(name))) continue;
+    throw InputError(folder.root() + ": holds a " + name +
+                     " of something else: expected the --output of an "
+                     "experiment, or a new folder");
+  }
+}
+
+void CheckSequence(const SequenceEntry& before, const SequenceEntry& now) {
+  std::error_code ignored;
+  const bool other = before.name == now.name && before.folder != now.folder &&
+                     fs::is_directory(before.folder, ignored) &&
+                     !fs::equivalent(before.folder, now.folder, ignored);
+  if (!other) return;
+  throw InputError("sequences: " + now.folder + " is named '" + now.name +
+                   "' as is " + before.folder +
+                   ", whose runs lie here: expected another name (in an "
+                   "experiment file) or another --output");
+}
+
+}  // namespace
+
+ExperimentFolder::ExperimentFolder(std::string root) : root_(std::move(root)) {}
+
+std::string ExperimentFolder::Below(const std::string& name) const {
+  return (fs::path(root_) / name).string();
+}
+
+std::string ExperimentFolder::Experiments() const {
+  return Below("experiments");
+}
+
+std::string ExperimentFolder::Tasks() const { return Below("tasks"); }
+
+std::string ExperimentFolder::Progress() const { return Below("progress.log"); }
+
+std::string ExperimentFolder::TaskFolder(const std::string& task) const {
+  return (fs::path(Tasks()) / task).string();
+}
+
+std::string ExperimentFolder::Run(const std::string& task) const {
+  return (fs::path(TaskFolder(task)) / "run").string();
+}
+
+std::string ExperimentFolder::Lock(const std::string& task) const {
+  return (fs::path(TaskFolder(task)) / "lock").string();
+}
+
+void AddExperiment(const ExperimentFolder& folder,
+                   const Experiment& experiment) {
+  CheckOwn(folder);
+  for (const Experiment& saved : SavedExperiments(folder)) {
+    for (const SequenceEntry& before : saved.sequences) {
+      for (const SequenceEntry& now : experiment.sequences) {
+        CheckSequence(before, now);
+      }
+    }
+  }
+  const std::string text = JsonText(ToJson(experiment), 2);
+  char hash[24];
+  std::snprintf(hash, sizeof(hash), "_%016llx.json",
+                static_cast<unsigned long long>(StableHash(text)));
+  const std::vector<std::string> names = Entries(folder.Experiments());
+  for (const std::string& name : names) {
+    if (name.find(hash) != std::string::npos) return;
+  }
+  char number[16];
+  std::snprintf(number, sizeof(number), "%04d",
+                static_cast<int>(names.size()) + 1);
+  WriteFileAtomically(
+      (fs::path(folder.Experiments()) / (std::string(number) + hash)).string(),
+      [&](std::ostream& out) { out << text << '\n'; });
+}
+
+std::vector<Task> KnownTasks(const ExperimentFolder& folder) {
+  if (!fs::is_directory(folder.Experiments()) &&
+      !fs::is_directory(folder.Tasks())) {
+    throw InputError(folder.root() +
+                     ": not found; expected the --output of sf_batch run");
+  }
+  std::vector<Task> tasks;
+  std::set<std::string> names;
+  for (const Experiment& experiment : SavedExperiments(folder)) {
+    for (Task& task : PlanTasks(experiment)) {
+      if (names.insert(task.name).second) tasks.push_back(std::move(task));
+    }
+  }
+  for (const std::string& name : Entries(folder.Tasks())) {
+    if (names.count(name) > 0) continue;
+    std::optional<TaskRecord> record = ReadTaskRecord(folder.TaskFolder(name));
+    if (record) tasks.push_back(std::move(record->task));
+  }
+  return tasks;
+}
+
+std::string KnownBaseline(const ExperimentFolder& folder) {
+  std::string baseline;
+  for (const Experiment& experiment : SavedExperiments(folder)) {
+    if (!experiment.baseline.empty()) baseline = experiment.baseline;
+  }
+  return baseline;
+}
+
+}  // namespace splitfusion

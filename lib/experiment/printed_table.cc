@@ -1,0 +1,266 @@
+#include "splitfusion/lib/experiment/printed_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <set>
+#include <sstream>
+
+namespace splitfusion {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+/// How a figure is shown.
+struct Shown {
+  const char* name;  ///< One of kFigureNames.
+  const char* head;  ///< Of the column.
+  double factor;     ///< From SI to the column's unit.
+  int decimals;      ///< Behind the point.
+};
+
+/// The most telling figures first.
+constexpr std::array<Shown, 16> kShown = {{
+    {"f_score_seen", "F seen %", 100, 1},
+    {"ate_m", "ATE mm", 1000, 2},
+    {"missing", "missing %", 100, 1},
+    {"stretched", "stretch %", 100, 2},
+    {"ghosts", "ghosts %", 100, 2},
+    {"surface_error_m", "surface mm", 1000, 1},
+    {"tracks_mean_m", "tracks mm", 1000, 1},
+    {"view_error_m", "view mm", 1000, 1},
+    {"lost_frames", "lost", 1, 1},
+    {"seconds_per_frame", "s/frame", 1, 3},
+    {"rpe_m", "RPE mm", 1000, 2},
+    {"rpe_deg", "RPE deg", 1, 3},
+    {"tracks_median_m", "tracks median", 1000, 1},
+    {"cpu_seconds_per_frame", "CPU s/frame", 1, 3},
+    {"peak_memory_bytes", "MB", 1e-6, 0},
+    {"frames", "frames", 1, 0},
+}};
+
+/// A column of the table.
+struct Column {
+  std::string head;
+  Lines cells;
+  bool is_text = false;  ///< Flush left.
+
+  std::size_t Width() const {
+    std::size_t width = head.size();
+    for (const std::string& cell : cells) width = std::max(width, cell.size());
+    return width;
+  }
+};
+
+std::size_t FigureIndex(const std::string& name) {
+  const auto found = std::find(kFigureNames.begin(), kFigureNames.end(), name);
+  return static_cast<std::size_t>(found - kFigureNames.begin());
+}
+
+std::string Number(double value, int decimals, bool with_sign) {
+  char text[64];
+  std::snprintf(text, sizeof(text), with_sign ? "%+.*f" : "%.*f", decimals,
+                value);
+  return text;
+}
+
+/// "12.5", or "12.5+-0.3" if the scatter is known.
+std::string SpreadText(const Spread& spread, double scatter, const Shown& shown,
+                       bool with_sign) {
+  if (spread.count == 0) return "-";
+  std::string text =
+      Number(spread.mean * shown.factor, shown.decimals, with_sign);
+  if (std::isfinite(scatter)) {
+    text += "+-" + Number(scatter * shown.factor, shown.decimals, false);
+  }
+  return text;
+}
+
+/// The head of a figure's column; the unit is SI's multiple.
+std::vector<Column> FigureColumns(const std::vector<ResultGroup>& groups,
+                                  bool differences) {
+  std::vector<Column> columns;
+  for (const Shown& shown : kShown) {
+    const std::size_t index = FigureIndex(shown.name);
+    Column column{shown.head, {}, false};
+    bool known = false;
+    for (const ResultGroup& group : groups) {
+      const Spread& spread = group.figures[index];
+      known = known || spread.count > 0;
+      const double scatter =
+          differences ? spread.StandardError() : spread.standard_deviation;
+      column.cells.push_back(SpreadText(spread, scatter, shown, differences));
+    }
+    if (known) columns.push_back(column);
+  }
+  return columns;
+}
+
+/// Text without its middle.
+std::string Shortened(const std::string& text, std::size_t width) {
+  if (text.size() <= width) return text;
+  if (width < 5) return text.substr(0, width);
+  const std::size_t tail = (width - 2) / 2;
+  return text.substr(0, width - 2 - tail) + ".." +
+         text.substr(text.size() - tail);
+}
+
+bool Varies(const Column& column) {
+  return std::set<std::string>(column.cells.begin(), column.cells.end())
+             .size() > 1;
+}
+
+/// What tells the lines apart: sequence, varied keys, number of runs.
+std::vector<Column> NameColumns(const ResultTable& table,
+                                const std::vector<ResultGroup>& groups,
+                                bool all_keys) {
+  std::vector<Column> columns = {{"sequence", {}, true}};
+  for (const ResultGroup& group : groups) {
+    columns[0].cells.push_back(group.sequence);
+  }
+  for (std::size_t i = 0; i < table.keys.size(); ++i) {
+    Column column{table.keys[i], {}, true};
+    for (const ResultGroup& group : groups) {
+      column.cells.push_back(group.values[i].empty() ? "-" : group.values[i]);
+    }
+    if (all_keys || Varies(column)) columns.push_back(column);
+  }
+  Column runs{"n", {}, false};
+  for (const ResultGroup& group : groups) {
+    std::string text = std::to_string(group.runs);
+    if (group.runs < group.planned) text += "/" + std::to_string(group.planned);
+    runs.cells.push_back(text);
+  }
+  columns.push_back(runs);
+  return columns;
+}
+
+void ShortenTo(std::size_t width, Column* column) {
+  column->head = Shortened(column->head, width);
+  for (std::string& cell : column->cells) cell = Shortened(cell, width);
+}
+
+std::size_t TotalWidth(const std::vector<Column>& columns) {
+  std::size_t width = 0;
+  for (const Column& column : columns) width += column.Width() + 2;
+  return width < 2 ? 0 : width - 2;
+}
+
+/// Shortens names until they leave room for a figure or two; names of columns
+/// that had to go whole.
+Lines FitNames(std::size_t width, std::vector<Column>* columns) {
+  constexpr std::size_t kRoomForFigures = 28;
+  const std::size_t room =
+      width > 2 * kRoomForFigures ? width - kRoomForFigures : width / 2;
+  for (std::size_t limit = 24; limit >= 8 && TotalWidth(*columns) > room;
+       limit -= 4) {
+    for (Column& column : *columns) ShortenTo(limit, &column);
+  }
+  Lines dropped;
+  while (columns->size() > 1 && TotalWidth(*columns) > room) {
+    // The number of runs is last, and stays.
+    const std::size_t place = columns->size() > 2 ? columns->size() - 2 : 1;
+    dropped.push_back((*columns)[place].head);
+    columns->erase(columns->begin() + static_cast<std::ptrdiff_t>(place));
+  }
+  if (TotalWidth(*columns) > room) ShortenTo(room, &columns->front());
+  return dropped;
+}
+
+std::string Line(const std::vector<Column>& columns, std::size_t width,
+                 const std::function<std::string(const Column&)>& cell_of) {
+  std::string line;
+  for (const Column& column : columns) {
+    const std::string cell = cell_of(column);
+    const std::string blanks(column.Width() - cell.size(), ' ');
+    line += line.empty() ? "" : "  ";
+    line += column.is_text ? cell + blanks : blanks + cell;
+  }
+  const std::size_t end = line.find_last_not_of(' ');
+  return line.substr(0,
+                     std::min(width, end == std::string::npos ? 0 : end + 1)) +
+         "\n";
+}
+
+/// Words in lines of `width`.
+std::string Wrapped(const std::string& text, std::size_t width) {
+  std::istringstream words(text);
+  std::string lines, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      lines += line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word.substr(0, width);
+  }
+  return line.empty() ? lines : lines + line + "\n";
+}
+
+/// The columns side by side, as many figures as fit, the others named below.
+std::string Fitted(std::vector<Column> columns,
+                   const std::vector<Column>& figures, std::size_t width) {
+  Lines dropped = FitNames(width, &columns);
+  std::size_t used = TotalWidth(columns);
+  for (const Column& figure : figures) {
+    if (used + 2 + figure.Width() > width) {
+      dropped.push_back(figure.head);
+      continue;
+    }
+    used += 2 + figure.Width();
+    columns.push_back(figure);
+  }
+  std::string text =
+      Line(columns, width, [](const Column& column) { return column.head; });
+  for (std::size_t i = 0; i < columns.front().cells.size(); ++i) {
+    text += Line(columns, width,
+                 [i](const Column& column) { return column.cells[i]; });
+  }
+  if (dropped.empty()) return text;
+  std::string names;
+  for (const std::string& name : dropped) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return text + Wrapped("Not shown (in the files): " + names + ".", width);
+}
+
+}  // namespace
+
+std::string PrintedSummary(const ResultTable& table,
+                           const std::vector<ResultGroup>& groups,
+                           std::size_t width) {
+  if (groups.empty()) return "No runs.\n";
+  const bool repeated =
+      std::any_of(groups.begin(), groups.end(),
+                  [](const ResultGroup& group) { return group.planned > 1; });
+  std::string text =
+      Fitted(NameColumns(table, groups, /*all_keys=*/false),
+             FigureColumns(groups, /*differences=*/false), width);
+  if (repeated) {
+    text += Wrapped("Mean +- standard deviation over n repeats.", width);
+  }
+  return text;
+}
+
+std::string PrintedDifferences(const ResultTable& table,
+                               const std::vector<ResultGroup>& groups,
+                               const std::string& baseline, std::size_t width) {
+  if (groups.empty()) {
+    return Wrapped("Nothing to compare with " + baseline + ".", width);
+  }
+  std::vector<Column> names = NameColumns(table, groups, /*all_keys=*/true);
+  Column seconds{"s/run", {}, false};
+  for (const ResultGroup& group : groups) {
+    seconds.cells.push_back(
+        group.seconds.count == 0 ? "-" : Number(group.seconds.mean, 1, false));
+  }
+  names.push_back(seconds);
+  return Wrapped("Differences to " + baseline +
+                     ", run by run of the same sequence and repeat: mean +- "
+                     "standard error.",
+                 width) +
+         Fitted(names, FigureColumns(groups, /*differences=*/true), width);
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,103 @@
+#include "splitfusion/lib/experiment/row_file.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/report/csv_row.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr std::size_t kTextColumns = 5;
+constexpr std::size_t kColumns = kTextColumns + kFigureNames.size();
+
+std::string HeadLine() {
+  CsvRow row;
+  for (const char* name : {"identity", "task", "sequence", "row", "settings"}) {
+    row.Add(std::string(name));
+  }
+  for (const char* name : kFigureNames) row.Add(std::string(name));
+  return row.text();
+}
+
+/// Fields of one line (RFC 4180); fields here hold no line break.
+std::vector<std::string> Fields(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      fields.back() += '"';
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+Figures ReadFigures(const std::vector<std::string>& fields) {
+  Figures figures;
+  for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
+    const std::string& text = fields[kTextColumns + i];
+    if (!text.empty()) figures.values[i] = std::strtod(text.c_str(), nullptr);
+  }
+  return figures;
+}
+
+}  // namespace
+
+RowFile::RowFile(const std::string& path) {
+  std::ifstream stream(path);
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    const std::vector<std::string> fields = Fields(line);
+    const bool good = number == 1
+                          ? line == HeadLine()
+                          : fields.size() == kColumns && !fields[0].empty();
+    if (!good) {
+      throw InputError(path + ", line " + std::to_string(number) +
+                       ": expected a row that sf_batch writes");
+    }
+    if (number == 1) continue;
+    rows_[fields[0]] = {fields[1], fields[2], fields[3], fields[4],
+                        ReadFigures(fields)};
+  }
+}
+
+const RowFile::Row* RowFile::Find(const std::string& identity) const {
+  const auto found = rows_.find(identity);
+  return found == rows_.end() ? nullptr : &found->second;
+}
+
+void RowFile::Set(const std::string& identity, const Row& row) {
+  rows_[identity] = row;
+}
+
+void RowFile::Write(const std::string& path) const {
+  std::set<std::pair<std::string, std::string>> order;
+  for (const auto& [identity, row] : rows_) order.emplace(row.task, identity);
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << HeadLine() << '\n';
+    for (const auto& [task, identity] : order) {
+      const Row& row = rows_.at(identity);
+      CsvRow line;
+      line.Add(identity).Add(row.task).Add(row.sequence).Add(row.row);
+      line.Add(row.settings);
+      for (const double value : row.figures.values) line.Add(value);
+      out << line.text() << '\n';
+    }
+  });
+}
+
+}  // namespace splitfusion

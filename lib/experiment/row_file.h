@@ -1,0 +1,47 @@
+#ifndef SPLITFUSION_LIB_EXPERIMENT_ROW_FILE_H_
+#define SPLITFUSION_LIB_EXPERIMENT_ROW_FILE_H_
+
+#include <map>
+#include <string>
+
+#include "splitfusion/lib/experiment/figures.h"
+
+namespace splitfusion {
+
+/// Figures of finished runs by their identity, in a small CSV file that
+/// outlives the run directories: identity, task, settings, and the figures.
+class RowFile {
+ public:
+  /// One run.
+  struct Row {
+    std::string task;      ///< Name of the task, for whoever reads the file.
+    std::string sequence;  ///< Name of the sequence.
+    std::string row;       ///< Name of the row.
+    std::string settings;  ///< As SettingsText().
+    Figures figures;       ///< All that are known.
+  };
+
+  RowFile() = default;
+  /// Reads a file; a missing one has no rows.
+  ///
+  /// @throw InputError if a line is not what Write() writes.
+  explicit RowFile(const std::string& path);
+
+  /// Whether there is no row.
+  bool empty() const { return rows_.empty(); }
+  /// The row of an identity; null if there is none.
+  const Row* Find(const std::string& identity) const;
+  /// Adds a row, or replaces the one of the same identity.
+  void Set(const std::string& identity, const Row& row);
+  /// Writes all rows, in the order of their tasks.
+  ///
+  /// @throw InputError if that is not possible.
+  void Write(const std::string& path) const;
+
+ private:
+  std::map<std::string, Row> rows_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EXPERIMENT_ROW_FILE_H_

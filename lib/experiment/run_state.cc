@@ -1,0 +1,40 @@
+#include "splitfusion/lib/experiment/run_state.h"
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+
+RunState ReadRunState(const std::string& run) {
+  RunState state;
+  try {
+    state.marker = ReadRunMarker(run);
+  } catch (const InputError&) {
+    state.damage = "run.json: expected the marker of a run";
+  }
+  return state;
+}
+
+std::string FileDamage(const RunState& state, const std::string& run) {
+  if (!state.marker) return state.damage;
+  for (const char* name : {"summary.json", "evaluation.json"}) {
+    try {
+      CheckRunFile(*state.marker, run, name);
+    } catch (const InputError&) {
+      return std::string(name) + ": not as it was written";
+    }
+  }
+  return "";
+}
+
+nlohmann::ordered_json ReadJsonOrNull(const std::string& path) {
+  using Json = nlohmann::ordered_json;
+  std::ifstream stream(path);
+  Json value = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  return value.is_discarded() ? Json() : value;
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,41 @@
+#ifndef SPLITFUSION_LIB_EXPERIMENT_RUN_STATE_H_
+#define SPLITFUSION_LIB_EXPERIMENT_RUN_STATE_H_
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "splitfusion/lib/report/run_marker.h"
+
+namespace splitfusion {
+
+/// What a run directory says of itself, however damaged it is.
+struct RunState {
+  std::optional<RunMarker>
+      marker;          ///< Empty if there is none, or a broken one.
+  std::string damage;  ///< What is wrong with the marker.
+
+  /// Whether the run has succeeded.
+  bool IsComplete() const {
+    return marker && marker->status == RunStatus::kComplete;
+  }
+  /// Id of the run; empty if it is unknown.
+  std::string Id() const { return marker ? marker->id : ""; }
+  /// Whether there is a marker, of whatever kind.
+  bool Exists() const { return marker || !damage.empty(); }
+};
+
+/// Reads RUN/run.json.
+RunState ReadRunState(const std::string& run);
+
+/// Why the marker's files that tables are made of cannot be trusted: the first
+/// of summary.json and evaluation.json that is not as it was written; empty if
+/// there is nothing against them.
+std::string FileDamage(const RunState& state, const std::string& run);
+
+/// A JSON file; null if it is missing or broken.
+nlohmann::ordered_json ReadJsonOrNull(const std::string& path);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EXPERIMENT_RUN_STATE_H_

@@ -1,0 +1,40 @@
+#ifndef SPLITFUSION_LIB_EXPERIMENT_SCRATCH_FOLDER_H_
+#define SPLITFUSION_LIB_EXPERIMENT_SCRATCH_FOLDER_H_
+
+#include <stdlib.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "splitfusion/lib/base/error.h"
+
+namespace splitfusion {
+
+/// An empty folder among the temporary ones; removed with the object.
+class ScratchFolder {
+ public:
+  /// @throw InputError if it cannot be made.
+  ScratchFolder() {
+    path_ =
+        (std::filesystem::temp_directory_path() / "sf_batch_XXXXXX").string();
+    if (mkdtemp(path_.data()) == nullptr) {
+      throw InputError(path_ + ": cannot be made; expected a TMPDIR to write");
+    }
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EXPERIMENT_SCRATCH_FOLDER_H_

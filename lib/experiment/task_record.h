@@ -1,0 +1,67 @@
+#ifndef SPLITFUSION_LIB_EXPERIMENT_TASK_RECORD_H_
+#define SPLITFUSION_LIB_EXPERIMENT_TASK_RECORD_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/experiment/figures.h"
+#include "splitfusion/lib/experiment/task.h"
+
+namespace splitfusion {
+
+/// Where a task is.
+enum class TaskState {
+  kWaiting,      ///< Was never started.
+  kStarted,      ///< At work, or stopped in the middle.
+  kChecking,     ///< Was complete; sf_run looks whether it still is.
+  kComplete,     ///< sf_run and sf_evaluate have ended well.
+  kFailed,       ///< sf_run has not.
+  kUnevaluated,  ///< sf_run has, sf_evaluate has not.
+  kRecorded,     ///< A file of rows has its figures; see RowFile.
+};
+
+/// Text in task.json.
+std::string ToString(TaskState state);
+
+/// What was done for a task: task.json of its folder.
+struct TaskRecord {
+  Task task;                              ///< What was to be done.
+  TaskState state = TaskState::kWaiting;  ///< Where it is.
+  int attempts = 0;                       ///< How often it was started.
+  int exit_code = 0;                      ///< Of what failed, or 0.
+  std::vector<std::string> last_lines;    ///< Of what failed, on stderr.
+  std::string reason;                  ///< Why it was done again; may be empty.
+  std::string run_id;                  ///< Of the result that counts.
+  std::string evaluated_id;            ///< Run that evaluation.json is about.
+  std::string evaluated_by;            ///< Its ground truth and flags.
+  double wall_seconds = 0;             ///< Of the run that counts.
+  double cpu_seconds = 0;              ///< Of the run that counts.
+  std::int64_t peak_memory_bytes = 0;  ///< Of the run that counts.
+  std::string host;                    ///< That worked on it last.
+  std::string started, ended;          ///< UTC, ISO 8601.
+  std::string identity;                ///< Of the run that counts.
+  Figures figures;                     ///< Of a recorded one.
+
+  /// The last of `last_lines`; empty if there is none.
+  std::string Error() const;
+};
+
+/// Reads FOLDER/task.json; empty if it is missing or damaged.
+std::optional<TaskRecord> ReadTaskRecord(const std::string& folder);
+
+/// Writes FOLDER/task.json.
+///
+/// @throw InputError if it cannot be written.
+void WriteTaskRecord(const std::string& folder, const TaskRecord& record);
+
+/// Now, UTC, as 2026-01-31T12:00:00Z.
+std::string TimeText();
+
+/// Name of this machine.
+std::string HostName();
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_EXPERIMENT_TASK_RECORD_H_
