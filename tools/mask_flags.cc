@@ -17,8 +17,8 @@
 #include "splitfusion/lib/segmentation/recording_segmenter.h"
 
 DEFINE_string(masks, "auto",
-              "Folder of instance masks, none, or auto: by --model if given, "
-              "else masks_noisy or mask beside the sequence.");
+              "Folder of instance masks, none, or auto: of --model if given, "
+              "else beside the sequence.");
 DEFINE_string(mask_kind, "non_rigid",
               "Of masks without classes: non_rigid or rigid.");
 DEFINE_string(labels, "", "File `class, rigid|non_rigid` a line.");

@@ -146,6 +146,29 @@ bool ParseFlags(int argc, char** argv, const std::string& name,
   return true;
 }
 
+/// Ends the program at once, without what else is done at its end: where memory
+/// or threads have run out, that can wait for ever.
+[[noreturn]] void EndFailed(const std::string& name, const char* what) {
+  std::cout.flush();
+  std::cerr << name << ": failed: " << what << std::endl;
+  std::_Exit(kExitFailure);
+}
+
+/// In place of an abort: what a library's own thread throws, for want of memory
+/// or of another thread, nobody can catch.
+[[noreturn]] void EndTerminated() {
+  const std::string name = gflags::ProgramInvocationShortName();
+  try {
+    if (const auto error = std::current_exception()) {
+      std::rethrow_exception(error);
+    }
+  } catch (const std::exception& error) {
+    EndFailed(name, error.what());
+  } catch (...) {
+  }
+  EndFailed(name, "ended by an error of unknown kind");
+}
+
 }  // namespace
 
 int ToolMain(int argc, char** argv, const std::string& usage,
@@ -153,6 +176,7 @@ int ToolMain(int argc, char** argv, const std::string& usage,
   SecureStandardStreams();
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   KeepFreedMemory();
+  std::set_terminate(EndTerminated);
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   try {
@@ -165,8 +189,7 @@ int ToolMain(int argc, char** argv, const std::string& usage,
     std::cerr << name << ": " << error.what() << '\n';
     return kExitBadInput;
   } catch (const std::exception& error) {
-    std::cerr << name << ": failed: " << error.what() << '\n';
-    return kExitFailure;
+    EndFailed(name, error.what());
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/segmentation/detection_list.h"
 
 namespace splitfusion {
@@ -17,20 +18,20 @@ using Settings = std::map<std::string, std::string>;
 
 constexpr char kSettingsFile[] = "segmentation.json";
 constexpr char kOverlapFolder[] = "overlaps";
+constexpr char kWrittenFile[] = "written.jsonl";
 
-void WriteImage(const fs::path& path, const cv::Mat& image) {
-  WritePathAtomically(path.string(), [&](const std::string& temporary) {
-    bool written = false;
-    try {
-      written = cv::imwrite(temporary, image);
-    } catch (const cv::Exception&) {
-      written = false;
-    }
-    if (!written) {
-      throw InputError(path.string() +
-                       ": cannot be written (not writable or disk full)");
-    }
-  });
+/// `path`: for the message; `temporary`: where to write.
+void WriteImage(const std::string& path, const std::string& temporary,
+                const cv::Mat& image) {
+  bool written = false;
+  try {
+    written = cv::imwrite(temporary, image);
+  } catch (const cv::Exception&) {
+    written = false;
+  }
+  if (!written) {
+    throw InputError(path + ": cannot be written (not writable or disk full)");
+  }
 }
 
 /// Stems of the label images in a folder; half-written ones, whose name begins
@@ -44,6 +45,30 @@ std::set<std::string> LabelStems(const fs::path& folder) {
     }
   }
   return stems;
+}
+
+std::string WrittenLine(const OwnedFile& file) {
+  return nlohmann::json{{"path", file.path}, {"bytes", file.bytes}}.dump() +
+         "\n";
+}
+
+/// The images that were written into a folder; a line cut short by a kill, and
+/// those that are not there any more or have changed, left out.
+OwnedFileList WrittenImages(const fs::path& folder) {
+  OwnedFileList files;
+  std::ifstream stream(folder / kWrittenFile);
+  for (std::string line; std::getline(stream, line);) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    OwnedFile file;
+    try {
+      file = {json.at("path").get<std::string>(),
+              json.at("bytes").get<std::uintmax_t>()};
+    } catch (const nlohmann::json::exception&) {
+      continue;
+    }
+    if (IsAsWritten(folder.string(), file)) files.push_back(file);
+  }
+  return files;
 }
 
 Settings ReadSettings(const fs::path& path) {
@@ -111,7 +136,18 @@ MaskFolderWriter::MaskFolderWriter(const std::string& folder,
   WriteFileAtomically(path.string(), [&](std::ostream& out) {
     out << nlohmann::json(settings).dump(1) << '\n';
   });
+  RepairList();
   FindCompleteFrames();
+}
+
+/// A line cut short by a kill would swallow the next one.
+void MaskFolderWriter::RepairList() const {
+  const fs::path list = fs::path(folder_) / kWrittenFile;
+  if (!fs::exists(list)) return;
+  const OwnedFileList written = WrittenImages(folder_);
+  WriteFileAtomically(list.string(), [&](std::ostream& out) {
+    for (const OwnedFile& file : written) out << WrittenLine(file);
+  });
 }
 
 void MaskFolderWriter::FindCompleteFrames() {
@@ -129,8 +165,9 @@ void MaskFolderWriter::FindCompleteFrames() {
   WriteFileAtomically(path.string(), [&](std::ostream& out) { out << kept; });
 }
 
-void MaskFolderWriter::AppendLines(const std::string& text) const {
-  const fs::path path = fs::path(folder_) / kDetectionListFile;
+void MaskFolderWriter::AppendLines(const std::string& file,
+                                   const std::string& text) const {
+  const fs::path path = fs::path(folder_) / file;
   std::ofstream stream(path, std::ios::binary | std::ios::app);
   stream << text << std::flush;
   if (!stream) {
@@ -138,9 +175,19 @@ void MaskFolderWriter::AppendLines(const std::string& text) const {
   }
 }
 
+/// Listed before it gets its name: an image that is there without being listed
+/// is of somebody else.
+void MaskFolderWriter::AddImage(const std::string& name,
+                                const cv::Mat& image) const {
+  const std::string path = (fs::path(folder_) / name).string();
+  WritePathAtomically(path, [&](const std::string& temporary) {
+    WriteImage(path, temporary, image);
+    AppendLines(kWrittenFile, WrittenLine({name, fs::file_size(temporary)}));
+  });
+}
+
 void MaskFolderWriter::Write(const Frame& frame,
                              const std::vector<InstanceMask>& instances) {
-  const fs::path root(folder_);
   const cv::Mat labels = LabelImageOf(instances, frame.color.size());
   std::string lines;
   for (std::size_t i = 0; i < instances.size(); ++i) {
@@ -149,23 +196,25 @@ void MaskFolderWriter::Write(const Frame& frame,
     if (IsCovered(instances, i, labels)) {
       detection.mask = std::string(kOverlapFolder) + "/" + frame.stem + "_" +
                        std::to_string(detection.index) + ".png";
-      WriteImage(root / detection.mask, instances[i].mask);
+      AddImage(detection.mask, instances[i].mask);
     }
     lines += DetectionLine(frame.index, frame.stem, detection) + "\n";
   }
-  AppendLines(lines);
-  WriteImage(root / (frame.stem + ".png"), labels);
+  AppendLines(kDetectionListFile, lines);
+  AddImage(frame.stem + ".png", labels);
   done_.insert(frame.stem);
 }
 
 void ClearMaskFolder(const std::string& folder) {
   const fs::path root(folder);
   if (!fs::exists(root / kSettingsFile)) return;
-  for (const std::string& stem : LabelStems(root)) {
-    fs::remove(root / (stem + ".png"));
+  if (!fs::exists(root / kWrittenFile) && !LabelStems(root).empty()) {
+    throw InputError(folder + ": not overwritten, for it does not say which " +
+                     "images sf_segment wrote (no " + kWrittenFile + ")");
   }
-  fs::remove_all(root / kOverlapFolder);
+  RemoveOwnedFiles(folder, WrittenImages(root));
   fs::remove(root / kDetectionListFile);
+  fs::remove(root / kWrittenFile);
   fs::remove(root / kSettingsFile);
 }
 

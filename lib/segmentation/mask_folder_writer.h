@@ -19,6 +19,7 @@ namespace splitfusion {
 ///  - `overlaps/STEM_INDEX.png`: the whole mask, 0 or 255, of every instance
 ///    that is partly covered by another; its line names it.
 ///  - `segmentation.json`: the settings that the masks depend on.
+///  - `written.jsonl`: path and size of every image that was written.
 ///
 /// Every image is written under another name first, and the label image of a
 /// frame last: a frame that has it is complete, and a writer that is opened on
@@ -45,14 +46,20 @@ class MaskFolderWriter {
 
  private:
   void FindCompleteFrames();
-  void AppendLines(const std::string& text) const;
+  void RepairList() const;
+  void AppendLines(const std::string& file, const std::string& text) const;
+  void AddImage(const std::string& name, const cv::Mat& image) const;
 
   std::string folder_;
   std::set<std::string> done_;
 };
 
-/// Removes what a MaskFolderWriter left in a folder, and nothing else. A
-/// folder that none has written is left as it is.
+/// Removes what a MaskFolderWriter left in a folder, and nothing else: images
+/// of others, or changed since, stay. A folder that none has written is left as
+/// it is.
+///
+/// @throw InputError if the folder does not list its images, or a file cannot
+///     be deleted.
 void ClearMaskFolder(const std::string& folder);
 
 }  // namespace splitfusion

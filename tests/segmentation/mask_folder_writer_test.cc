@@ -105,6 +105,36 @@ TEST(MaskFolderWriter, GoesOnAfterFramesThatAreComplete) {
   EXPECT_EQ(folder.Read("m/detections.jsonl"), whole);
 }
 
+TEST(MaskFolderWriter, ImagesOfOthersAndChangedOnesAreNotCleared) {
+  const TemporaryFolder folder;
+  {
+    MaskFolderWriter writer(folder / "m", kSettings);
+    for (const int i : {0, 1}) writer.Write(MakeFrame(i), MakeInstances());
+  }
+  folder.Write("m/131.25.png", "edited by hand");
+  folder.Write("m/my_own.png", "an image");
+  const std::string list = folder.Read("m/written.jsonl");
+  folder.Write("m/written.jsonl", list.substr(0, list.size() - 3));
+  MaskFolderWriter writer(folder / "m", kSettings);
+  EXPECT_TRUE(writer.Has("131.25")) << "not to be overwritten";
+  writer.Write(MakeFrame(2), MakeInstances());
+  ClearMaskFolder(folder / "m");
+  EXPECT_FALSE(folder.Has("m/132.25.png"));
+  EXPECT_FALSE(folder.Has("m/130.25.png"));
+  EXPECT_EQ(folder.Read("m/131.25.png"), "edited by hand");
+  EXPECT_EQ(folder.Read("m/my_own.png"), "an image");
+}
+
+TEST(MaskFolderWriter, AFolderWithoutItsListGoesOnButIsNotCleared) {
+  const TemporaryFolder folder;
+  MaskFolderWriter(folder / "m", kSettings).Write(MakeFrame(0), {});
+  std::filesystem::remove(folder / "m/written.jsonl");
+  ExpectInputError([&] { ClearMaskFolder(folder / "m"); },
+                   "m: not overwritten, for it does not say which images");
+  EXPECT_TRUE(folder.Has("m/130.25.png"));
+  EXPECT_EQ(MaskFolderWriter(folder / "m", kSettings).size(), 1);
+}
+
 TEST(MaskFolderWriter, RefusesOtherSettingsAndOtherImages) {
   const TemporaryFolder folder;
   MaskFolderWriter(folder / "m", kSettings).Write(MakeFrame(0), {});
@@ -119,7 +149,9 @@ TEST(MaskFolderWriter, RefusesOtherSettingsAndOtherImages) {
   ClearMaskFolder(folder / "mine");
   EXPECT_TRUE(folder.Has("mine/1.png"));
   folder.Write("m/notes.txt", "mine");
+  folder.Write("m/overlaps/mine.png", "mine, too");
   ClearMaskFolder(folder / "m");
+  EXPECT_EQ(folder.Read("m/overlaps/mine.png"), "mine, too");
   EXPECT_TRUE(folder.Has("m/notes.txt"));
   EXPECT_FALSE(folder.Has("m/130.25.png"));
   MaskFolderWriter writer(folder / "m", settings);
