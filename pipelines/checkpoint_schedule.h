@@ -1,13 +1,15 @@
 #ifndef SPLITFUSION_PIPELINES_CHECKPOINT_SCHEDULE_H_
 #define SPLITFUSION_PIPELINES_CHECKPOINT_SCHEDULE_H_
 
+#include <algorithm>
+
 namespace splitfusion {
 
 /// When the state of a run is saved.
 class CheckpointSchedule {
  public:
-  /// Every so many frames; 0: so seldom that saving costs a fiftieth of the
-  /// time; -1: never.
+  /// Every so many frames; 0: every ten seconds, or more seldom where saving
+  /// would cost more than a fiftieth of the time; -1: never.
   explicit CheckpointSchedule(int every) : every_(every) {}
 
   /// Whether to save now that another frame is done. `seconds`: since the last
@@ -22,13 +24,15 @@ class CheckpointSchedule {
   void Saved(double seconds) {
     constexpr double kShare = 0.02;
     frames_ = 0;
-    interval_ = seconds / kShare;
+    interval_ = std::max(kShortest, seconds / kShare);
   }
 
  private:
+  static constexpr double kShortest = 10;  // Seconds.
+
   int every_;
   int frames_ = 0;
-  double interval_ = 10;  // Seconds, until it is known what saving costs.
+  double interval_ = kShortest;
 };
 
 }  // namespace splitfusion

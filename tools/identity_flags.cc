@@ -18,12 +18,15 @@
 #include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/lib/experiment/settings.h"
 #include "splitfusion/lib/report/library_versions.h"
+#include "splitfusion/lib/report/run_paths.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 
 DEFINE_string(set, "",
               "KEY=VALUE; ...: flags, or terms.NAME.KEY for one number of the "
               "energy, as in terms.arap.weight=4.");
 DECLARE_string(class_names);
+DECLARE_int32(at);
+DECLARE_string(from);
 DECLARE_string(labels);
 DECLARE_string(masks);
 DECLARE_string(model);
@@ -196,6 +199,8 @@ RunIdentity IdentityFromFlags(const TumReader& reader) {
   AddFrames(reader, cache, &identity);
   identity.parts["input.masks"] = MasksHash(cache);
   identity.parts["input.labels"] = FileHash(FLAGS_labels);
+  identity.parts["input.from"] = FileHash(
+      FLAGS_from.empty() ? "" : RunPaths(FLAGS_from).KeptCheckpoint(FLAGS_at));
   identity.parts["input.model"] = FileHash(FLAGS_model);
   identity.parts["input.class_names"] = FileHash(FLAGS_class_names);
   identity.parts["method"] = MethodHash();

@@ -96,6 +96,10 @@ std::shared_ptr<Segmenter> MakeFolderSegmenter(const TumReader& reader,
   auto segmenter = std::make_shared<MaskFolderSegmenter>(folder, unnamed);
   const std::vector<std::string> stems = StemsWithMasks(reader, *segmenter);
   CheckMasksFit(reader, stems.size(), folder);
+  for (const std::string& stem : stems) {
+    segmenter->CheckFiles(stem,
+                          {reader.camera().width, reader.camera().height});
+  }
   if (options.split.merge_touching.empty()) return segmenter;
   Classes known = {unnamed};
   for (const std::string& stem : stems) known.merge(segmenter->ClassesOf(stem));

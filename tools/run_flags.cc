@@ -21,6 +21,8 @@ DEFINE_string(preset, "splitfusion",
 DEFINE_string(intrinsics, "",
               "fx,fy,cx,cy,width,height; replaces the calibration file.");
 DEFINE_double(depth_scale, 0, "Depth units a metre; 0 = calibration file.");
+DEFINE_bool(skip_bad_frames, false,
+            "Leave out frames whose images are missing or broken.");
 DEFINE_double(min_depth, 0.4, "Metres; nearer depth is dropped.");
 DEFINE_double(max_depth, 5.0, "Metres; farther depth is dropped.");
 DEFINE_double(min_score, 0.4, "Detections below are ignored.");
@@ -221,6 +223,7 @@ void CheckParts(const PipelineOptions& options) {
 TumReaderOptions ReaderOptionsFromFlags() {
   TumReaderOptions options = FramesFromFlags();
   options.depth_scale = FLAGS_depth_scale;
+  options.skip_bad_frames = FLAGS_skip_bad_frames;
   options.depth_filter.min_depth = FLAGS_min_depth;
   options.depth_filter.max_depth = FLAGS_max_depth;
   if (!FLAGS_intrinsics.empty()) {

@@ -3,7 +3,9 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -48,6 +50,13 @@ DEFINE_bool(resume, true, "Go on with an unfinished run of the same options.");
 DEFINE_int32(checkpoint_every, 0,
              "Save the state every n-th frame; 0 = so that it costs 2 % of the "
              "time, -1 = never.");
+DEFINE_bool(
+    keep_checkpoints, false,
+    "Keep the state of every checkpoint in RUN/checkpoints, for --from.");
+DEFINE_string(from, "",
+              "Run with --keep_checkpoints whose state this one starts from, "
+              "with energy and solver of its own.");
+DEFINE_int32(at, 0, "First frame after that state.");
 DEFINE_bool(print_identity, false,
             "Print what decides the result as JSON, and run nothing.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
@@ -55,8 +64,10 @@ DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,
             "Warped meshes hold what was seen only later, too.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
+DECLARE_int32(first_frame);
 DECLARE_double(max_depth);
 DECLARE_double(min_depth);
+DECLARE_string(masks);
 DECLARE_string(preset);
 DECLARE_string(sequence);
 
@@ -65,6 +76,18 @@ namespace {
 
 /// Of checkpoint.bin: another one with every change of what it holds.
 constexpr std::uint32_t kCheckpointVersion = SplitFusion::kStateVersion;
+
+/// Refuses to replace what the run is to read from.
+void CheckNotInOutput(const std::string& flag, const std::string& input) {
+  namespace fs = std::filesystem;
+  if (!FLAGS_overwrite || input.empty() || !fs::exists(input)) return;
+  const fs::path output = fs::weakly_canonical(FLAGS_output);
+  const fs::path path = fs::weakly_canonical(input);
+  const auto end =
+      std::mismatch(output.begin(), output.end(), path.begin(), path.end());
+  CheckOption(end.first != output.end(), flag, input,
+              "a folder outside of --output, which is overwritten");
+}
 
 /// The run directory as the flags ask for it.
 RunFolder OpenRunFolder(const RunIdentity& identity) {
@@ -99,7 +122,10 @@ class Run {
         folder_(*folder),
         schedule_(FLAGS_checkpoint_every) {
     if (folder_.start() == RunStart::kResumed && !Resume()) work_ = make();
-    if (!directory_) OpenDirectory();
+    if (!directory_) {
+      OpenDirectory();
+      if (!FLAGS_from.empty()) StartFromOther();
+    }
     if (!folder_.note().empty())
       LOG(WARNING) << FLAGS_output << ": " << folder_.note();
     WriteCalibration();
@@ -162,8 +188,28 @@ class Run {
     (*archive)(done_, coarse_, warned_of_depth_, work_->fusion, *directory_);
   }
 
+  /// The state alone, without what this run reported.
+  template <typename Archive>
+  void SerializeState(Archive* archive) {
+    ExpectSame(archive, "first_frame", FLAGS_first_frame);
+    (*archive)(done_, work_->fusion);
+  }
+
+  void StartFromOther() {
+    ReadArchiveFile(RunPaths(FLAGS_from).KeptCheckpoint(FLAGS_at),
+                    kCheckpointVersion,
+                    [&](ArchiveReader* archive) { SerializeState(archive); });
+    work_->reader.SkipTo(done_);
+  }
+
   void SaveCheckpoint() {
     const Stopwatch writing;
+    if (FLAGS_keep_checkpoints) {
+      WriteArchiveFile(
+          folder_.unfinished().KeptCheckpoint(FLAGS_first_frame + done_),
+          kCheckpointVersion,
+          [&](ArchiveWriter* archive) { SerializeState(archive); });
+    }
     WriteArchiveFile(folder_.unfinished().Checkpoint(), kCheckpointVersion,
                      [&](ArchiveWriter* archive) { Serialize(archive); });
     schedule_.Saved(writing.Seconds());
@@ -347,6 +393,11 @@ void CheckOutputFlags() {
               "a number of frames, or 0");
   CheckOption(FLAGS_checkpoint_every >= -1, "checkpoint_every",
               FLAGS_checkpoint_every, "a number of frames, 0 or -1");
+  CheckOption(!FLAGS_keep_checkpoints || FLAGS_checkpoint_every > 0,
+              "keep_checkpoints", "true", "--checkpoint_every above 0");
+  CheckNotInOutput("sequence", FLAGS_sequence);
+  CheckNotInOutput("masks", FLAGS_masks);
+  CheckNotInOutput("from", FLAGS_from);
   CheckOption(!FLAGS_keep_same || FLAGS_overwrite, "keep_same", "true",
               "--overwrite beside it");
 }

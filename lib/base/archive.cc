@@ -1,7 +1,7 @@
 #include "splitfusion/lib/base/archive.h"
 
 namespace splitfusion {
-namespace archive_internal {
+namespace internal {
 namespace {
 
 constexpr std::size_t kMaxDimensions = 32;  // Of OpenCV's matrices.
@@ -37,5 +37,5 @@ cv::Mat MakeMat(const MatHeader& header, int type,
   return cv::Mat(header.sizes, header.type);
 }
 
-}  // namespace archive_internal
+}  // namespace internal
 }  // namespace splitfusion

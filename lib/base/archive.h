@@ -32,7 +32,7 @@ namespace splitfusion {
 //    one function for both directions, so that they cannot get out of step. It
 //    changes nothing unless Archive::kReads.
 
-namespace archive_internal {
+namespace internal {
 
 template <typename T, typename = void>
 struct IsEigenMatrix : std::false_type {};
@@ -134,10 +134,11 @@ void VisitElements(Archive* archive, cv::Mat* mat) {
   }
 }
 
-}  // namespace archive_internal
+}  // namespace internal
 
 // What Visit() finds for the types of others.
 
+/// A truth value.
 template <typename Archive>
 void Serialize(Archive* archive, bool* value) {
   std::uint8_t byte = *value ? 1 : 0;
@@ -145,6 +146,7 @@ void Serialize(Archive* archive, bool* value) {
   if constexpr (Archive::kReads) *value = byte != 0;
 }
 
+/// A text.
 template <typename Archive>
 void Serialize(Archive* archive, std::string* text) {
   const std::uint64_t size = archive->Count(text->size(), 1);
@@ -152,31 +154,34 @@ void Serialize(Archive* archive, std::string* text) {
   archive->Raw(text->data(), size);
 }
 
+/// A transform, as its matrix.
 template <typename Archive, typename T, int Dim, int Mode, int Options>
 void Serialize(Archive* archive,
                Eigen::Transform<T, Dim, Mode, Options>* transform) {
   (*archive)(transform->matrix());
 }
 
+/// A matrix of any size and, unless it is a cv::Mat_, type.
 template <typename Archive, typename Mat>
 std::enable_if_t<std::is_base_of_v<cv::Mat, Mat>> Serialize(Archive* archive,
                                                             Mat* mat) {
-  archive_internal::MatHeader header = archive_internal::HeaderOf(*mat);
+  internal::MatHeader header = internal::HeaderOf(*mat);
   (*archive)(header.type, header.sizes);
   cv::Mat elements = *mat;  // The same memory.
   if constexpr (Archive::kReads) {
-    elements = archive_internal::MakeMat(
-        header, archive_internal::ElementType(mat), *archive);
+    elements = internal::MakeMat(header, internal::ElementType(mat), *archive);
     *mat = elements;
   }
-  archive_internal::VisitElements(archive, &elements);
+  internal::VisitElements(archive, &elements);
 }
 
+/// A pair.
 template <typename Archive, typename A, typename B>
 void Serialize(Archive* archive, std::pair<A, B>* pair) {
   (*archive)(pair->first, pair->second);
 }
 
+/// A value that may be missing.
 template <typename Archive, typename T>
 void Serialize(Archive* archive, std::optional<T>* value) {
   bool has_value = value->has_value();
@@ -188,35 +193,40 @@ void Serialize(Archive* archive, std::optional<T>* value) {
   if (has_value) (*archive)(**value);
 }
 
+/// A vector; of plain values in one piece.
 template <typename Archive, typename T>
 void Serialize(Archive* archive, std::vector<T>* values) {
-  if constexpr (archive_internal::IsPlain<T>::value) {
+  if constexpr (internal::IsPlain<T>::value) {
     const std::uint64_t count = archive->Count(values->size(), sizeof(T));
     if constexpr (Archive::kReads) values->resize(count);
     archive->Raw(values->data(), count * sizeof(T));
   } else {
-    archive_internal::SerializeList(archive, values);
+    internal::SerializeList(archive, values);
   }
 }
 
+/// A deque.
 template <typename Archive, typename T>
 void Serialize(Archive* archive, std::deque<T>* values) {
-  archive_internal::SerializeList(archive, values);
+  internal::SerializeList(archive, values);
 }
 
+/// An array of what is not plain.
 template <typename Archive, typename T, std::size_t N>
 void Serialize(Archive* archive, std::array<T, N>* values) {
   for (T& value : *values) (*archive)(value);
 }
 
+/// A set.
 template <typename Archive, typename T>
 void Serialize(Archive* archive, std::set<T>* values) {
-  archive_internal::SerializeTree<T>(archive, values);
+  internal::SerializeTree<T>(archive, values);
 }
 
+/// A map.
 template <typename Archive, typename Key, typename T>
 void Serialize(Archive* archive, std::map<Key, T>* values) {
-  archive_internal::SerializeTree<std::pair<Key, T>>(archive, values);
+  internal::SerializeTree<std::pair<Key, T>>(archive, values);
 }
 
 /// Writes a value that whoever reads has already, or checks it.
@@ -237,12 +247,12 @@ void ExpectSame(Archive* archive, const std::string& name, const T& own) {
 
 template <typename... T>
 void ArchiveWriter::operator()(const T&... values) {
-  (archive_internal::Visit(this, const_cast<T*>(&values)), ...);
+  (internal::Visit(this, const_cast<T*>(&values)), ...);
 }
 
 template <typename... T>
 void ArchiveReader::operator()(T&... values) {
-  (archive_internal::Visit(this, &values), ...);
+  (internal::Visit(this, &values), ...);
 }
 
 }  // namespace splitfusion

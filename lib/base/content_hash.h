@@ -12,9 +12,12 @@ namespace splitfusion {
 /// damage and differences; it is no protection against forgery.
 class ContentHash {
  public:
+  /// Of nothing so far.
   ContentHash();
   ~ContentHash();
+  /// What it was moved from must not be used.
   ContentHash(ContentHash&&) noexcept;
+  /// As the constructor.
   ContentHash& operator=(ContentHash&&) noexcept;
 
   /// Appends bytes.

@@ -46,7 +46,9 @@ class DirectoryLock {
 
   /// Removes the file if it is still ours.
   ~DirectoryLock();
+  /// What it was moved from holds nothing.
   DirectoryLock(DirectoryLock&&) noexcept;
+  /// As the constructor; releases what it held.
   DirectoryLock& operator=(DirectoryLock&&) noexcept;
 
   /// Whether the file is there and ours: not after the folder was removed, or

@@ -14,6 +14,7 @@ struct OwnedFile {
   std::uintmax_t bytes = 0;  ///< Size as it was written.
 };
 
+/// What a program wrote into a folder.
 using OwnedFileList = std::vector<OwnedFile>;
 
 /// All regular files below a folder, sorted by path; symbolic links are neither

@@ -7,7 +7,7 @@ namespace splitfusion {
 
 /// Foreign text for a message of one line: in single quotes, shortened to about
 /// 60 characters, with control characters and bytes that are no UTF-8 written
-/// as \xNN.
+/// in hexadecimal, backslash xNN.
 std::string Quoted(const std::string& text);
 
 }  // namespace splitfusion

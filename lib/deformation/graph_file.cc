@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/brief_json.h"
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
@@ -22,7 +23,7 @@ std::vector<Eigen::Vector3d> Positions(const std::string& path,
     const auto p = item.get<std::array<double, 3>>();
     positions.emplace_back(p[0], p[1], p[2]);
     if (!positions.back().cast<float>().allFinite()) {
-      throw InputError(path + ": field 'positions': " + item.dump() +
+      throw InputError(path + ": field 'positions': " + BriefJson(item) +
                        ": expected metres");
     }
   }
@@ -48,7 +49,7 @@ void CheckEdges(const std::string& path, const DeformationGraph& graph) {
 void CheckArray(const std::string& path, const std::string& field,
                 const Json& json) {
   if (json.is_array()) return;
-  throw InputError(path + ": field '" + field + "': " + json.dump() +
+  throw InputError(path + ": field '" + field + "': " + BriefJson(json) +
                    ": expected an array");
 }
 
@@ -69,7 +70,7 @@ std::vector<int> Frames(const std::string& path, const std::string& field,
     const bool is_frame =
         item.is_number_unsigned() && item.get<std::uint64_t>() <= INT32_MAX;
     if (!is_frame) {
-      throw InputError(path + ": field '" + field + "': " + item.dump() +
+      throw InputError(path + ": field '" + field + "': " + BriefJson(item) +
                        ": expected a frame index");
     }
     frames.push_back(item.get<int>());
@@ -95,7 +96,7 @@ std::vector<FrameRun> Runs(const std::string& path, const Json& json) {
                 (next_run ? ends[i - 1] < ends[i] : ends[i - 1] <= ends[i]);
   }
   if (!ascending) {
-    throw InputError(path + ": field 'sightings': " + json.dump() +
+    throw InputError(path + ": field 'sightings': " + BriefJson(json) +
                      ": expected first and last frames of runs, ascending");
   }
   std::vector<FrameRun> runs;
@@ -112,6 +113,13 @@ std::vector<std::vector<FrameRun>> Sightings(const std::string& path,
   std::vector<std::vector<FrameRun>> sightings;
   for (const Json& item : json) sightings.push_back(Runs(path, item));
   return sightings;
+}
+
+/// A field, not a copy of it: copies are made as deep as the value is, which
+/// may be too deep for the stack.
+const Json& FieldOr(const Json& json, const char* field, const Json& missing) {
+  const auto found = json.find(field);
+  return found == json.end() ? missing : *found;
 }
 
 DeformationGraph ParseGraph(const std::string& path, const Json& json) {
@@ -132,10 +140,11 @@ DeformationGraph ParseGraph(const std::string& path, const Json& json) {
   }
   graph.motions.resize(graph.positions.size());
   CheckEdges(path, graph);
-  graph.first_seen = FirstSeen(path, json.value("first_seen", Json::array()),
+  const Json none = Json::array();
+  graph.first_seen = FirstSeen(path, FieldOr(json, "first_seen", none),
                                graph.positions.size());
-  graph.sightings = Sightings(path, json.value("sightings", Json::array()),
-                              graph.positions.size());
+  graph.sightings =
+      Sightings(path, FieldOr(json, "sightings", none), graph.positions.size());
   return graph;
 }
 

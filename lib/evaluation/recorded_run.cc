@@ -1,6 +1,7 @@
 #include "splitfusion/lib/evaluation/recorded_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -26,6 +27,16 @@ std::vector<RecordedFrame> FramesOfTrajectory(const std::string& path) {
   return frames;
 }
 
+/// @throw InputError if a line is about another frame than the pose is.
+void CheckTimestamp(const std::string& place, double timestamp,
+                    const TimedPose& pose) {
+  constexpr double kTolerance = 1e-4;  // Seconds; the text has six decimals.
+  if (std::abs(timestamp - pose.timestamp) < kTolerance) return;
+  throw InputError(place + ": timestamp " + std::to_string(timestamp) +
+                   ": expected " + std::to_string(pose.timestamp) +
+                   " as in trajectory.txt");
+}
+
 /// Sets index and stem of a frame from its line of frames.jsonl.
 void ReadFrameLine(const std::string& place, const std::string& line,
                    RecordedFrame* frame) {
@@ -33,9 +44,23 @@ void ReadFrameLine(const std::string& place, const std::string& line,
     const auto json = nlohmann::json::parse(line);
     frame->index = json.at("frame").get<int>();
     frame->stem = json.at("stem").get<std::string>();
+    CheckTimestamp(place, json.value("timestamp", frame->pose.timestamp),
+                   frame->pose);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(place + ": expected an object with 'frame' and 'stem' (" +
                      error.what() + ")");
+  }
+}
+
+/// @throw InputError unless every frame has a higher index than the last.
+void CheckAscending(const std::string& path,
+                    const std::vector<RecordedFrame>& frames) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const int least = i == 0 ? 0 : frames[i - 1].index + 1;
+    if (frames[i].index >= least) continue;
+    throw InputError(path + ":" + std::to_string(i + 1) + ": frame " +
+                     std::to_string(frames[i].index) + ": expected " +
+                     std::to_string(least) + " or more, frames ascend");
   }
 }
 
@@ -56,6 +81,7 @@ void ReadFrameLines(const std::string& path,
                      std::to_string(frames->size()) +
                      " poses of trajectory.txt");
   }
+  CheckAscending(path, *frames);
 }
 
 /// The value of a flag in a flagfile; empty if there is none.
@@ -147,6 +173,20 @@ void CheckMotions(const std::string& path, const RecordedSurface& surface) {
   }
 }
 
+/// Nothing here reads the volume, but one that is lost or was overwritten is to
+/// be noticed: by its first eight bytes.
+///
+/// @throw InputError if they are not those of an OpenVDB file.
+void CheckVolume(const std::string& path) {
+  constexpr char kMagic[] = " BDV\0\0\0\0";
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(path + ": cannot be opened");
+  std::string head(sizeof(kMagic) - 1, '?');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (stream && head == std::string(kMagic, sizeof(kMagic) - 1)) return;
+  throw InputError(path + ": expected an OpenVDB file");
+}
+
 }  // namespace
 
 const RecordedFrame* RecordedRun::Find(int frame) const {
@@ -172,6 +212,7 @@ RecordedSurface ReadRecordedSurface(const std::string& folder) {
       ReadGraph((path / "graph.json").string(), &surface.neighbors_per_point);
   surface.motions = ReadMotions((path / "motions.bin").string());
   CheckMotions(folder, surface);
+  CheckVolume((path / "tsdf.vdb").string());
   return surface;
 }
 

@@ -1,12 +1,16 @@
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/quoted.h"
 
 namespace splitfusion {
 namespace {
@@ -39,7 +43,9 @@ class PlyReader {
  public:
   explicit PlyReader(const std::string& path)
       : path_(path), stream_(path, std::ios::binary) {
-    if (!stream_) throw InputError(path + ": cannot be opened");
+    std::error_code error;
+    bytes_ = std::filesystem::file_size(path, error);
+    if (error || !stream_) throw InputError(path + ": cannot be opened");
     ReadHeader();
   }
 
@@ -66,7 +72,7 @@ class PlyReader {
     } else if (type == "int" || type == "int32") {
       value = ReadAs<std::int32_t>(stream_);
     } else {
-      Fail("property type '" + type + "' is unknown");
+      Fail("property type " + Quoted(type) + " is unknown");
     }
     if (!stream_) Fail("file ends before its last element");
     return value;
@@ -100,14 +106,20 @@ class PlyReader {
       header_.binary = format == "binary_little_endian";
     } else if (keyword == "element") {
       PlyElement element;
-      if (!(words >> element.name >> element.count)) Fail("bad line: " + line);
+      std::int64_t count = -1;
+      if (!(words >> element.name >> count) || count < 0) {
+        Fail("bad line: " + Quoted(line));
+      }
+      // Each takes a byte at least; checked before memory is taken for them.
+      element.count = static_cast<std::size_t>(count);
+      if (element.count > bytes_) Fail("file ends before its last element");
       header_.elements.push_back(element);
     } else if (keyword == "property") {
       PlyProperty property;
       words >> property.type;
       if (property.type == "list") words >> property.list_type >> property.type;
       if (!(words >> property.name) || header_.elements.empty()) {
-        Fail("bad line: " + line);
+        Fail("bad line: " + Quoted(line));
       }
       header_.elements.back().properties.push_back(property);
     }
@@ -116,6 +128,7 @@ class PlyReader {
 
   std::string path_;
   std::ifstream stream_;
+  std::uintmax_t bytes_ = 0;
   PlyHeader header_;
 };
 

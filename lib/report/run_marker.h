@@ -40,7 +40,7 @@ enum class PublishingPhase {
 /// what in it is the run's. Format: docs/report_format.md.
 struct RunMarker {
   std::string id;  ///< Of this very run, RandomId().
-  RunStatus status = RunStatus::kRunning;
+  RunStatus status = RunStatus::kRunning;  ///< How far it has come.
   std::string error;            ///< Of a failed run, one line.
   std::vector<int> resumed_at;  ///< Frames from which it went on.
   RunIdentity identity;         ///< What decides the result.

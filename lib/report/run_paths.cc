@@ -28,6 +28,9 @@ std::string RunPaths::Marker() const { return Below("run.json"); }
 std::string RunPaths::Lock() const { return Below("lock"); }
 std::string RunPaths::Unfinished() const { return Below("unfinished"); }
 std::string RunPaths::Checkpoint() const { return Below("checkpoint.bin"); }
+std::string RunPaths::KeptCheckpoint(int frame) const {
+  return Below("checkpoints/" + FrameName(frame) + ".bin");
+}
 std::string RunPaths::Options() const { return Below("options.flags"); }
 std::string RunPaths::Calibration() const { return Below("calibration.txt"); }
 std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }

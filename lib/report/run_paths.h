@@ -14,10 +14,12 @@ class RunPaths {
 
   /// The run directory itself.
   const std::string& root() const { return root_; }
-  std::string Marker() const;       ///< RUN/run.json
-  std::string Lock() const;         ///< RUN/lock
-  std::string Unfinished() const;   ///< RUN/unfinished, of a run that goes on
-  std::string Checkpoint() const;   ///< RUN/checkpoint.bin
+  std::string Marker() const;      ///< RUN/run.json
+  std::string Lock() const;        ///< RUN/lock
+  std::string Unfinished() const;  ///< RUN/unfinished, of a run that goes on
+  std::string Checkpoint() const;  ///< RUN/checkpoint.bin
+  /// RUN/checkpoints/FRAME.bin, state before that frame.
+  std::string KeptCheckpoint(int frame) const;
   std::string Options() const;      ///< RUN/options.flags
   std::string Calibration() const;  ///< RUN/calibration.txt
   std::string Trajectory() const;   ///< RUN/trajectory.txt

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "splitfusion/lib/base/brief_json.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/segmentation/class_names.h"
 
@@ -44,7 +45,7 @@ Detection ParseDetection(const std::string& path, const Json& entry,
   const bool ok = detection.index >= 1 && detection.index <= 65535 &&
                   detection.score >= 0 && detection.score <= 1;
   if (!ok) {
-    throw InputError(path + ": detection " + entry.dump() +
+    throw InputError(path + ": detection " + BriefJson(entry) +
                      ": expected an index of 1..65535, a class name, a score "
                      "of 0..1 and, if any, the 4 corners of a box");
   }

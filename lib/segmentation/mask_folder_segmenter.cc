@@ -62,12 +62,25 @@ std::string ClassOfFile(const std::string& name, const std::string& prefix,
   return text;
 }
 
+/// @throw InputError unless a mask has the size of its frame.
+void CheckSize(const std::string& path, const cv::Size& size,
+               const cv::Size& expected) {
+  if (size == expected) return;
+  throw InputError(path + ": mask of " + ToString(size) + ": expected " +
+                   ToString(expected) + ", the size of the frame");
+}
+
+/// The same by its header.
+void CheckMaskFile(const std::string& path, const cv::Size& expected) {
+  const std::optional<ImageHeader> header = ReadLabelHeader(path);
+  if (header) CheckSize(path, header->size, expected);
+}
+
 cv::Mat ReadMask(const std::string& path, const Frame& frame) {
+  CheckMaskFile(path, frame.color.size());
   cv::Mat labels = ReadLabelImage(path);
-  if (labels.size() == frame.color.size()) return labels;
-  throw InputError(path + ": mask of " + ToString(labels.size()) +
-                   ": expected " + ToString(frame.color.size()) +
-                   ", the size of the frame");
+  CheckSize(path, labels.size(), frame.color.size());
+  return labels;
 }
 
 void AddInstance(const cv::Mat& mask, const Detection& detection,
@@ -129,6 +142,22 @@ std::vector<std::string> MaskFolderSegmenter::InstanceFiles(
 bool MaskFolderSegmenter::Has(const std::string& stem) const {
   return fs::exists(fs::path(folder_) / (stem + ".png")) ||
          !InstanceFiles(stem).empty();
+}
+
+void MaskFolderSegmenter::CheckFiles(const std::string& stem,
+                                     const cv::Size& size) const {
+  const fs::path root(folder_);
+  const std::string label_path = (root / (stem + ".png")).string();
+  if (fs::exists(label_path)) {
+    CheckMaskFile(label_path, size);
+    for (const Detection& detection : DetectionsOf(stem, cv::Mat())) {
+      if (detection.mask.empty()) continue;
+      CheckMaskFile((root / detection.mask).string(), size);
+    }
+  }
+  for (const std::string& name : InstanceFiles(stem)) {
+    CheckMaskFile((root / name).string(), size);
+  }
 }
 
 std::set<std::string> MaskFolderSegmenter::ClassesOf(

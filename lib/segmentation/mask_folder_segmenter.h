@@ -50,6 +50,12 @@ class MaskFolderSegmenter : public Segmenter {
   /// Whether there is a file for the frame of this stem.
   bool Has(const std::string& stem) const;
 
+  /// Looks at the files of a stem without decoding them: that their headers can
+  /// be read and are those of masks of `size`, and that the lists are whole.
+  ///
+  /// @throw InputError on the first that is not.
+  void CheckFiles(const std::string& stem, const cv::Size& size) const;
+
   /// Classes that the lists and file names of this stem give; without those of
   /// pixels that no list names.
   ///

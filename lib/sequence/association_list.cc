@@ -4,12 +4,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <tuple>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {
 namespace {
@@ -46,8 +46,11 @@ bool IsDepthName(const std::string& file) {
 }
 
 bool IsDepthImage(const fs::path& path) {
-  const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
-  return image.type() == CV_16UC1;
+  try {
+    return ReadDepthImage(path.string()).type() == CV_16UC1;
+  } catch (const InputError&) {
+    return false;  // If it is broken, whoever reads it says so.
+  }
 }
 
 /// True if the second column of the pairs is the colour.

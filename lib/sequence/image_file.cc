@@ -1,6 +1,5 @@
 #include "splitfusion/lib/sequence/image_file.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -12,38 +11,23 @@
 namespace splitfusion {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-
-Bytes ReadBytes(const std::string& path) {
+std::vector<std::uint8_t> ReadBytes(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path + ": cannot be opened");
-  return Bytes(std::istreambuf_iterator<char>(stream), {});
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The decoders fill a truncated picture with grey and only print a warning:
-/// look for the end marker of the format first.
-bool LooksTruncated(const Bytes& bytes) {
-  const auto contains = [&](const Bytes& marker) {
-    return std::search(bytes.rbegin(), bytes.rend(), marker.rbegin(),
-                       marker.rend()) != bytes.rend();
-  };
-  if (bytes.size() < 12) return true;
-  if (bytes[0] == 0xff && bytes[1] == 0xd8) return !contains({0xff, 0xd9});
-  if (bytes[0] == 0x89 && bytes[1] == 'P') {
-    return !contains({'I', 'E', 'N', 'D'});
-  }
-  return false;
-}
-
+/// The decoders fill a truncated picture with grey and only print a warning,
+/// wait for what is no file, and take all memory for a size that is absurd:
+/// the header is looked at first.
 cv::Mat Decode(const std::string& path, int flags) {
-  const Bytes bytes = ReadBytes(path);
+  ReadImageHeader(path);
+  const std::vector<std::uint8_t> bytes = ReadBytes(path);
   cv::Mat image;
-  if (!LooksTruncated(bytes)) {
-    try {
-      image = cv::imdecode(bytes, flags);
-    } catch (const cv::Exception&) {
-      image.release();
-    }
+  try {
+    image = cv::imdecode(bytes, flags);
+  } catch (const cv::Exception&) {
+    image.release();
   }
   if (image.empty()) {
     throw InputError(path + ": " + std::to_string(bytes.size()) +
@@ -53,35 +37,62 @@ cv::Mat Decode(const std::string& path, int flags) {
   return image;
 }
 
-[[noreturn]] void ThrowFormat(const std::string& path, const cv::Mat& image,
+[[noreturn]] void ThrowFormat(const std::string& path,
+                              const ImageHeader& header,
                               const std::string& expected) {
-  throw InputError(
-      path + ": image of " + std::to_string(8 * image.elemSize1()) + " bit, " +
-      std::to_string(image.channels()) + " channel(s): expected " + expected);
+  throw InputError(path + ": image of " + std::to_string(header.bits) +
+                   " bit, " + std::to_string(header.channels) +
+                   " channel(s): expected " + expected);
+}
+
+/// @throw InputError unless it is a depth image.
+void CheckIsDepth(const std::string& path, const ImageHeader& header) {
+  if (header.bits == 16 && header.channels == 1) return;
+  ThrowFormat(path, header, "a depth image of 16 bit, 1 channel");
+}
+
+/// @throw InputError unless it is a label image.
+void CheckIsLabel(const std::string& path, const ImageHeader& header) {
+  if (header.channels == 1) return;
+  ThrowFormat(path, header, "a label image of 8 or 16 bit, 1 channel");
+}
+
+ImageHeader HeaderOf(const cv::Mat& image) {
+  return {image.size(), static_cast<int>(8 * image.elemSize1()),
+          image.channels()};
 }
 
 }  // namespace
 
 cv::Mat ReadColorImage(const std::string& path) {
-  return Decode(path, cv::IMREAD_COLOR);
+  // The depth knows nothing of an orientation.
+  return Decode(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
 cv::Mat ReadDepthImage(const std::string& path) {
   cv::Mat image = Decode(path, cv::IMREAD_UNCHANGED);
-  if (image.type() != CV_16UC1) {
-    ThrowFormat(path, image, "a depth image of 16 bit, 1 channel");
-  }
+  CheckIsDepth(path, HeaderOf(image));
   return image;
 }
 
 cv::Mat ReadLabelImage(const std::string& path) {
   cv::Mat image = Decode(path, cv::IMREAD_UNCHANGED);
-  if (image.type() != CV_16UC1 && image.type() != CV_8UC1) {
-    ThrowFormat(path, image, "a label image of 8 or 16 bit, 1 channel");
-  }
+  CheckIsLabel(path, HeaderOf(image));
   cv::Mat labels;
   image.convertTo(labels, CV_16U);
   return labels;
+}
+
+std::optional<ImageHeader> ReadDepthHeader(const std::string& path) {
+  const std::optional<ImageHeader> header = ReadImageHeader(path);
+  if (header) CheckIsDepth(path, *header);
+  return header;
+}
+
+std::optional<ImageHeader> ReadLabelHeader(const std::string& path) {
+  const std::optional<ImageHeader> header = ReadImageHeader(path);
+  if (header) CheckIsLabel(path, *header);
+  return header;
 }
 
 std::string ToString(cv::Size size) {

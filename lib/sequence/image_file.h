@@ -2,11 +2,15 @@
 #define SPLITFUSION_LIB_SEQUENCE_IMAGE_FILE_H_
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
+
+#include "splitfusion/lib/sequence/image_header.h"
 
 namespace splitfusion {
 
-/// Reads a colour image (png, jpg, ...) as HxW 8UC3, BGR.
+/// Reads a colour image (png, jpg, ...) as HxW 8UC3, BGR; an orientation that
+/// the file asks for is ignored, since the depth has none.
 ///
 /// @throw InputError if the file is missing, truncated or not an image.
 cv::Mat ReadColorImage(const std::string& path);
@@ -20,6 +24,16 @@ cv::Mat ReadDepthImage(const std::string& path);
 ///
 /// @throw InputError if the file is missing, truncated, or has channels.
 cv::Mat ReadLabelImage(const std::string& path);
+
+/// Header of a depth image; see ReadImageHeader().
+///
+/// @throw InputError as that one, and if it is not 16 bit, 1 channel.
+std::optional<ImageHeader> ReadDepthHeader(const std::string& path);
+
+/// Header of a label or mask image; see ReadImageHeader().
+///
+/// @throw InputError as that one, and if it has channels.
+std::optional<ImageHeader> ReadLabelHeader(const std::string& path);
 
 /// "640x480".
 std::string ToString(cv::Size size);

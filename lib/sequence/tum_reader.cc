@@ -1,7 +1,11 @@
 #include "splitfusion/lib/sequence/tum_reader.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
@@ -28,6 +32,20 @@ Calibration ResolveCalibration(const std::string& folder,
   if (options.depth_scale > 0) calibration.depth_scale = options.depth_scale;
   calibration.Check();
   return calibration;
+}
+
+void CheckSize(const std::string& path, const cv::Size& size,
+               const cv::Size& expected) {
+  if (size == expected) return;
+  throw InputError(path + ": image of " + ToString(size) + ": expected " +
+                   ToString(expected) + ", the size of the calibration");
+}
+
+/// The same of a header, if the format has one that is known.
+void CheckSize(const std::string& path,
+               const std::optional<ImageHeader>& header,
+               const cv::Size& expected) {
+  if (header) CheckSize(path, header->size, expected);
 }
 
 std::vector<AssociatedFiles> SelectFrames(std::vector<AssociatedFiles> pairs,
@@ -64,15 +82,77 @@ TumReader::TumReader(const std::string& folder, TumReaderOptions options)
   options_.Check();
   pairs_ = SelectFrames(
       FindAssociations(folder_, options_.association_tolerance), options_);
+  indices_.resize(pairs_.size());
+  std::iota(indices_.begin(), indices_.end(), options_.first_frame);
   calibration_ = ResolveCalibration(folder_, options_);
+  if (!options_.skip_bad_frames) return;
+  for (const BadFrame& bad : FindBadFrames()) {
+    const auto at = std::find(indices_.begin(), indices_.end(), bad.index);
+    Skip(static_cast<int>(at - indices_.begin()), bad.reason);
+  }
+  if (!pairs_.empty()) return;
+  throw InputError(skipped_.front().reason + " (and none of the other " +
+                   std::to_string(skipped_.size() - 1) +
+                   " frames can be read)");
 }
 
-void TumReader::CheckSize(const std::string& path, const cv::Mat& image) const {
-  const cv::Size expected(camera().width, camera().height);
-  if (image.size() == expected) return;
-  throw InputError(path + ": image of " + ToString(image.size()) +
-                   ": expected " + ToString(expected) +
-                   ", the size of the calibration");
+int TumReader::size() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return static_cast<int>(pairs_.size());
+}
+
+std::vector<BadFrame> TumReader::skipped() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return skipped_;
+}
+
+cv::Size TumReader::ExpectedSize() const {
+  return {camera().width, camera().height};
+}
+
+void TumReader::CheckFiles(int i) const {
+  const std::string color = (fs::path(folder_) / pairs_[i].color.file).string();
+  const std::string depth = (fs::path(folder_) / pairs_[i].depth.file).string();
+  CheckSize(color, ReadImageHeader(color), ExpectedSize());
+  CheckSize(depth, ReadDepthHeader(depth), ExpectedSize());
+}
+
+std::vector<BadFrame> TumReader::FindBadFrames() const {
+  std::vector<std::string> reasons(pairs_.size());
+  tbb::parallel_for(0, static_cast<int>(pairs_.size()), [&](int i) {
+    try {
+      CheckFiles(i);
+    } catch (const InputError& error) {
+      reasons[i] = error.what();
+    }
+  });
+  std::vector<BadFrame> bad;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (reasons[i].empty()) continue;
+    bad.push_back({indices_[i], Stem(static_cast<int>(i)), reasons[i]});
+  }
+  return bad;
+}
+
+void TumReader::CheckFrames() const {
+  const std::vector<BadFrame> bad = FindBadFrames();
+  if (bad.empty()) return;
+  throw InputError(
+      bad.front().reason +
+      (bad.size() == 1
+           ? std::string()
+           : " (and " + std::to_string(bad.size() - 1) + " more bad frames)"));
+}
+
+void TumReader::Skip(int i, const std::string& reason) {
+  BadFrame bad{indices_[i], Stem(i), reason};
+  const std::lock_guard<std::mutex> lock(mutex_);
+  pairs_.erase(pairs_.begin() + i);
+  indices_.erase(indices_.begin() + i);
+  const auto after = std::find_if(
+      skipped_.begin(), skipped_.end(),
+      [&](const BadFrame& item) { return item.index > bad.index; });
+  skipped_.insert(after, std::move(bad));
 }
 
 std::string TumReader::Stem(int i) const {
@@ -83,23 +163,48 @@ std::string TumReader::ColorStem(int i) const {
   return fs::path(pairs_.at(i).color.file).stem().string();
 }
 
-std::optional<Frame> TumReader::Next() {
-  if (next_ >= size()) return std::nullopt;
-  const AssociatedFiles& pair = pairs_[next_];
+Frame TumReader::Read(int i) const {
+  CheckFiles(i);
+  const AssociatedFiles& pair = pairs_[i];
   const fs::path color_path = fs::path(folder_) / pair.color.file;
   const fs::path depth_path = fs::path(folder_) / pair.depth.file;
   Frame frame;
-  frame.index = options_.first_frame + next_;
+  frame.index = indices_[i];
   frame.timestamp = pair.depth.timestamp;
   frame.stem = depth_path.stem().string();
   frame.color_stem = color_path.stem().string();
   frame.color = ReadColorImage(color_path.string());
-  CheckSize(color_path.string(), frame.color);
+  CheckSize(color_path.string(), frame.color.size(), ExpectedSize());
   const cv::Mat raw = ReadDepthImage(depth_path.string());
-  CheckSize(depth_path.string(), raw);
+  CheckSize(depth_path.string(), raw.size(), ExpectedSize());
   frame.depth = FilterDepth(DepthInMetres(raw, calibration_.depth_scale),
                             options_.depth_filter);
-  ++next_;
+  return frame;
+}
+
+/// Empty if the frame is left out.
+std::optional<Frame> TumReader::ReadOrSkip() {
+  try {
+    return Read(next_);
+  } catch (const InputError& error) {
+    if (!options_.skip_bad_frames) throw;
+    Skip(next_, error.what());
+    return std::nullopt;
+  }
+}
+
+void TumReader::SkipTo(int i) {
+  if (options_.skip_bad_frames) {
+    while (next_ < i && Next()) {
+    }
+  }
+  next_ = i;
+}
+
+std::optional<Frame> TumReader::Next() {
+  std::optional<Frame> frame;
+  while (!frame && next_ < size()) frame = ReadOrSkip();
+  if (frame) ++next_;
   return frame;
 }
 

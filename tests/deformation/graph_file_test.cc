@@ -121,5 +121,22 @@ TEST(Graph, NamesTheBadField) {
   EXPECT_THROW(ReadGraph(path, &neighbors), InputError);
 }
 
+TEST(Graph, DeepOnesAreRefusedNotFollowed) {
+  const TemporaryFolder folder;
+  const std::string deep =
+      std::string(100000, '[') + "{}" + std::string(100000, ']');
+  const std::string path = folder.Write(
+      "graph.json",
+      R"({"node_spacing": 1, "positions": [[1, 2, 3]], "edges": [[]],
+          "first_seen": {"a": )" +
+          deep + "}}");
+  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'first_seen'"));
+  folder.Write("graph.json",
+               R"({"node_spacing": 1, "positions": [[1, 2, 3]], "edges": [[]],
+                   "sightings": [)" +
+                   deep + "]}");
+  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'sightings'"));
+}
+
 }  // namespace
 }  // namespace splitfusion

@@ -5,6 +5,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
@@ -126,6 +129,52 @@ TEST_F(FilesOfARun, MissingOrContradictoryOnesAreNamed) {
   EXPECT_THAT(ReadMessage(), HasSubstr("trajectory.txt: no pose"));
   EXPECT_THAT(Message([&] { ReadRun(folder_ / "none"); }),
               HasSubstr("expected the directory of a run"));
+}
+
+TEST_F(FilesOfARun, FramesMustAscendAndFitTheTrajectory) {
+  const std::string lines = folder_.Read("run/frames.jsonl");
+  std::vector<std::string> reversed;
+  std::istringstream stream(lines);
+  for (std::string line; std::getline(stream, line);) {
+    reversed.insert(reversed.begin(), line);
+  }
+  std::string text;
+  for (const std::string& line : reversed) text += line + "\n";
+  folder_.Write("run/frames.jsonl", text);
+  EXPECT_THAT(ReadMessage(),
+              HasSubstr("frames.jsonl:2: frame 10: expected 12"));
+  folder_.Write("run/frames.jsonl",
+                R"({"frame": 0, "stem": "stem0", "timestamp": 999.5})" +
+                    lines.substr(lines.find('\n')));
+  EXPECT_THAT(ReadMessage(), HasSubstr("frames.jsonl:1: timestamp 999.5"));
+  folder_.Write("run/frames.jsonl", R"({"frame": -1, "stem": "stem0"})" +
+                                        lines.substr(lines.find('\n')));
+  EXPECT_THAT(ReadMessage(), HasSubstr("frames.jsonl:1: frame -1: expected 0"));
+}
+
+TEST_F(FilesOfARun, VolumesThatAreNoneAreNoticed) {
+  const std::string file = "run/surfaces/001_thin_plate/tsdf.vdb";
+  for (const std::string& text :
+       {std::string(), std::string("garbage and more of it"),
+        std::string(" BDV")}) {
+    folder_.Write(file, text);
+    EXPECT_THAT(ReadMessage(), HasSubstr("tsdf.vdb: expected an OpenVDB file"));
+  }
+  std::filesystem::remove(folder_ / file);
+  EXPECT_THAT(ReadMessage(), HasSubstr("tsdf.vdb: cannot be opened"));
+}
+
+TEST_F(FilesOfARun, DamagedMotionsAreNoticed) {
+  const std::string file = "run/surfaces/001_thin_plate/motions.bin";
+  const std::string bytes = folder_.Read(file);
+  for (std::size_t at = 0; at < bytes.size(); at += bytes.size() / 300) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+    folder_.Write(file, damaged);
+    EXPECT_THAT(ReadMessage(), AllOf(HasSubstr("001_thin_plate/motions.bin"),
+                                     Not(HasSubstr("\n"))))
+        << "byte " << at;
+  }
 }
 
 TEST_F(FilesOfARun, TracksAreCheckedForTheirSize) {

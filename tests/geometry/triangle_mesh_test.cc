@@ -83,6 +83,12 @@ TEST(Ply, BadFilesAreRejectedInOneLine) {
       {"", "first line is not 'ply'"},
       {"solid\n", "first line is not 'ply'"},
       {head + xyz, "no 'end_header'"},
+      {"ply\nformat ascii 1.0\nelement vertex 4000000000\n" + xyz +
+           "end_header\n",
+       "ends before its last"},
+      {"ply\nformat ascii 1.0\nelement vertex -5\n" + xyz + "end_header\n",
+       "bad line: 'element vertex -5'"},
+      {"ply\nelement vertex many\x1b[2J\n", "'element vertex many\\x1b[2J'"},
       {"ply\nformat binary_big_endian 1.0\nend_header\n", "big-endian"},
       {head + xyz + face + "0 0 0\n1 0 0\n", "ends before its last"},
       {head + xyz + face + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "out of range"},

@@ -164,6 +164,38 @@ TEST_F(MaskFolderSegmenterTest, RefusesColourMasks) {
   ExpectInputError([&] { Segment(); }, "expected a label image");
 }
 
+TEST_F(MaskFolderSegmenterTest, FilesAreCheckedWithoutAFrame) {
+  const auto check = [&](const std::string& stem, const cv::Size& size) {
+    MaskFolderSegmenter(folder_ / "").CheckFiles(stem, size);
+  };
+  const cv::Size size(32, 24);
+  WriteLabels();
+  WriteLabels("000008_person.png");
+  EXPECT_NO_THROW(check("000007", size));
+  EXPECT_NO_THROW(check("000008", size));
+  EXPECT_NO_THROW(check("000009", size)) << "without a file";
+  ExpectInputError(
+      [&] {
+        check("000007", {64, 48});
+      },
+      "000007.png: mask of 32x24: expected 64x48");
+  ExpectInputError([&] { check("000008", {64, 48}); }, "000008_person.png: m");
+  folder_.Write("000007.json", R"([{"index": 1, "class": 7}])");
+  ExpectInputError([&] { check("000007", size); }, "000007.json: detection");
+  folder_.Write("000008_person.png", "no image");
+  ExpectInputError([&] { check("000008", size); }, "000008_person.png: 8 byt");
+}
+
+TEST_F(MaskFolderSegmenterTest, DeepListsAreRefusedNotFollowed) {
+  WriteLabels();
+  const std::string deep(100000, '[');
+  const std::string end(100000, ']');
+  folder_.Write("000007.json", "[" + deep + end + "]");
+  ExpectInputError([&] { Segment(); }, "000007.json: detection [[[[...]]]]");
+  folder_.Write("000007.json", R"([{"index": )" + deep + end + "}]");
+  ExpectInputError([&] { Segment(); }, "detection {\"index\":[[[...]]]}");
+}
+
 TEST(FindMaskFolder, KnowsClassLists) {
   TemporaryFolder folder;
   folder.Write("masks_noisy/readme.txt", "");

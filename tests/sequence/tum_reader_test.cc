@@ -114,6 +114,81 @@ TEST_F(TumReaderTest, RefusesTruncatedJpeg) {
   ExpectRefused("c0.jpg");
 }
 
+TEST_F(TumReaderTest, AllFramesAreLookedAtBeforeTheFirst) {
+  EXPECT_TRUE(TumReader(folder_ / "").FindBadFrames().empty());
+  EXPECT_NO_THROW(TumReader(folder_ / "").CheckFrames());
+  std::filesystem::remove(folder_ / "rgb/c1.png");
+  WriteDepth(2, cv::Mat(24, 32, CV_8UC1, cv::Scalar(100)));
+  const TumReader reader(folder_ / "");
+  const std::vector<BadFrame> bad = reader.FindBadFrames();
+  ASSERT_EQ(bad.size(), 2u);
+  EXPECT_EQ(bad[0].index, 1);
+  EXPECT_EQ(bad[0].stem, "d1");
+  EXPECT_NE(bad[0].reason.find("c1.png: cannot be opened"), std::string::npos);
+  EXPECT_EQ(bad[1].index, 2);
+  EXPECT_NE(bad[1].reason.find("d2.png: image of 8 bit"), std::string::npos);
+  ExpectInputError([&] { reader.CheckFrames(); },
+                   "(no such file) (and 1 more bad frames)");
+  TumReaderOptions options;
+  options.max_frames = 1;
+  EXPECT_NO_THROW(TumReader(folder_ / "", options).CheckFrames())
+      << "frames that are not read";
+}
+
+TEST_F(TumReaderTest, BadFramesAreLeftOutIfAskedFor) {
+  std::filesystem::resize_file(DepthPath(1), 60);
+  TumReaderOptions options;
+  options.skip_bad_frames = true;
+  TumReader reader(folder_ / "", options);
+  EXPECT_EQ(reader.size(), 2);
+  EXPECT_EQ(reader.Stem(1), "d2");
+  EXPECT_NO_THROW(reader.CheckFrames());
+  EXPECT_EQ(reader.Next()->index, 0);
+  const std::optional<Frame> frame = reader.Next();
+  EXPECT_EQ(frame->index, 2) << "indices stay";
+  EXPECT_EQ(frame->stem, "d2");
+  EXPECT_FALSE(reader.Next().has_value());
+  ASSERT_EQ(reader.skipped().size(), 1u);
+  EXPECT_EQ(reader.skipped()[0].stem, "d1");
+}
+
+/// Makes a file that only the decoder can find out about.
+void Damage(const std::string& path) {
+  std::fstream stream(path, std::ios::in | std::ios::out | std::ios::binary);
+  stream.seekp(41);  // Within the compressed pixels.
+  stream << "XXXXXXXX";
+}
+
+TEST_F(TumReaderTest, FramesThatCannotBeDecodedAreLeftOutIfAskedFor) {
+  Damage(DepthPath(0));
+  TumReaderOptions options;
+  options.skip_bad_frames = true;
+  TumReader reader(folder_ / "", options);
+  EXPECT_EQ(reader.size(), 3);
+  EXPECT_EQ(reader.Next()->index, 1);
+  EXPECT_EQ(reader.size(), 2);
+  ASSERT_EQ(reader.skipped().size(), 1u);
+  EXPECT_EQ(reader.skipped()[0].index, 0);
+  EXPECT_NE(reader.skipped()[0].reason.find("d0.png"), std::string::npos);
+  EXPECT_EQ(reader.Next()->index, 2);
+  EXPECT_FALSE(reader.Next().has_value());
+  // Going on counts the frames that could be read.
+  TumReader resumed(folder_ / "", options);
+  resumed.SkipTo(1);
+  EXPECT_EQ(resumed.Next()->index, 2);
+  EXPECT_FALSE(resumed.Next().has_value());
+  EXPECT_EQ(resumed.size(), 2);
+}
+
+TEST_F(TumReaderTest, NoFrameAtAllIsAnError) {
+  for (int i = 0; i < 3; ++i) std::filesystem::remove(DepthPath(i));
+  TumReaderOptions options;
+  options.skip_bad_frames = true;
+  ExpectInputError([&] { TumReader reader(folder_ / "", options); },
+                   "d0.png: cannot be opened (no such file) (and none of the "
+                   "other 2 frames can be read)");
+}
+
 TEST_F(TumReaderTest, NamesBadOptions) {
   TumReaderOptions options;
   options.first_frame = 3;

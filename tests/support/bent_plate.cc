@@ -86,6 +86,8 @@ void WriteSurface(const fs::path& folder, const TriangleMesh& mesh,
   WritePly((folder / "mesh.ply").string(), mesh);
   WriteGraph((folder / "graph.json").string(), graph, 6);
   WriteMotions((folder / "motions.bin").string(), history);
+  // What an OpenVDB file begins with: nothing here looks further.
+  std::ofstream(folder / "tsdf.vdb") << std::string(" BDV\0\0\0\0", 8);
 }
 
 /// The wall in the true world with `seen` (10) and `label` (0).

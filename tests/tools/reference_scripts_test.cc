@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -39,6 +40,8 @@ void LeadAway(const std::string& folder) {
     for (NodeMotion& motion : frame.motions) motion.translation.x() += 0.5;
   }
   WriteMotions(folder + "/motions.bin", surface.motions);
+  // It is no longer the run that its marker describes.
+  std::filesystem::remove(std::filesystem::path(folder) / "../../run.json");
   surface.graph.sightings.clear();
   const AnimatedSurface animated(surface);
   for (const FrameMotions& frame : surface.motions.frames) {

@@ -247,6 +247,37 @@ TEST_F(Resume, SetChangesOneNumberAndIsResolved) {
   }
 }
 
+TEST_F(Resume, OneStateCanBeGoneOnFromWithOtherTerms) {
+  ASSERT_EQ(
+      Run("base", std::string(kOptions) + " --keep_checkpoints").exit_code, 0);
+  const std::string from = std::string(kOptions) + " --at=12 --from=";
+  const ProgramResult same = Run("same", from + (folder_ / "base"));
+  ASSERT_EQ(same.exit_code, 0) << same.errors;
+  const std::string whole = folder_.Read("base/trajectory.txt");
+  const std::string rest = folder_.Read("same/trajectory.txt");
+  const std::string poses = rest.substr(rest.rfind('#'));
+  EXPECT_EQ(std::count(rest.begin(), rest.end(), '\n') -
+                std::count(whole.begin(), whole.end(), '\n'),
+            -12);
+  EXPECT_THAT(whole, HasSubstr(poses.substr(poses.find('\n') + 1)));
+  EXPECT_EQ(folder_.Read("same/surfaces/001_person/motions.bin"),
+            folder_.Read("base/surfaces/001_person/motions.bin"));
+  const ProgramResult other =
+      Run("other", from + (folder_ / "base") + " --set=terms.arap.weight=2");
+  ASSERT_EQ(other.exit_code, 0) << other.errors;
+  EXPECT_NE(folder_.Read("other/surfaces/001_person/motions.bin"),
+            folder_.Read("base/surfaces/001_person/motions.bin"));
+  EXPECT_EQ(
+      RunProgram("sf_evaluate", "--samples=500 --run=" + (folder_ / "other") +
+                                    " --ground_truth=" + (folder_ / "sequence"))
+          .exit_code,
+      0);
+  const ProgramResult none = Run(
+      "none", std::string(kOptions) + " --at=13 --from=" + (folder_ / "base"));
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.errors, HasSubstr("checkpoints/000013.bin"));
+}
+
 TEST_F(Resume, TheIdentityIsOfContentsNotOfNames) {
   const auto identity = [&](const std::string& sequence) {
     const ProgramResult result = RunProgram(

@@ -233,8 +233,13 @@ TEST_F(SfRun, RefusesToOverwriteUnlessTold) {
   folder_.Write("run/mine.txt", "do not touch");
   EXPECT_EQ(Run("run", "--max_frames=1").exit_code, 2);
   EXPECT_EQ(folder_.Read("run/mine.txt"), "do not touch");
-  EXPECT_EQ(Run("run", "--max_frames=1 --overwrite").exit_code, 0);
+  EXPECT_EQ(Run("run", "--max_frames=1 --overwrite").exit_code, 2);
   EXPECT_EQ(folder_.Read("run/mine.txt"), "do not touch");
+  EXPECT_EQ(Run("other", "--max_frames=1").exit_code, 0);
+  folder_.Write("other/mine.txt", "do not touch");
+  EXPECT_EQ(Run("other", "--max_frames=2").exit_code, 2);
+  EXPECT_EQ(Run("other", "--max_frames=2 --overwrite").exit_code, 0);
+  EXPECT_EQ(folder_.Read("other/mine.txt"), "do not touch");
 }
 
 TEST_F(SfRun, HelpNamesOwnFlagsAndFitsAScreen) {

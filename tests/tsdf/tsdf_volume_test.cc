@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <sstream>
 
+#include "splitfusion/lib/base/archive.h"
 #include "support/expect_input_error.h"
 #include "support/sample_depth.h"
 #include "support/sample_graphs.h"
@@ -246,6 +248,52 @@ TEST(TsdfVolume, FilesRoundTrip) {
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.normals, b.normals);
   EXPECT_EQ(a.colors, b.colors);
+}
+
+std::string StateOf(const TsdfVolume& volume) {
+  std::ostringstream out;
+  ArchiveWriter archive(&out);
+  archive(volume);
+  archive.Flush();
+  return out.str();
+}
+
+void Restore(const std::string& state, TsdfVolume* volume) {
+  std::istringstream in(state);
+  ArchiveReader archive(&in, state.size(), "state");
+  archive(*volume);
+  EXPECT_EQ(archive.left(), 0u);
+}
+
+TEST(TsdfVolume, GoesOnFromItsStateBitForBit) {
+  for (const bool has_color : {true, false}) {
+    TsdfOptions options = kOptions;
+    options.has_color = has_color;
+    TsdfVolume volume(options), restored(options);
+    Fuse(SphereDepth(SmallCamera(), {0, 0, 1}, 0.3), Rigid3d::Identity(),
+         &volume);
+    AllocateAround({{1, 1, 1}}, 0.1, &volume);  // Never observed.
+    Fuse(WallDepth(SmallCamera(), 1), Rigid3d::Identity(), &restored);
+    Restore(StateOf(volume), &restored);
+    EXPECT_EQ(restored.leaf_count(), volume.leaf_count());
+    for (TsdfVolume* each : {&volume, &restored}) {
+      Fuse(SphereDepth(SmallCamera(), {0.1, 0, 1}, 0.2), Rigid3d::Identity(),
+           each);
+    }
+    EXPECT_TRUE(StateOf(restored) == StateOf(volume));
+    const TriangleMesh a = ExtractMesh(volume, 0.5);
+    const TriangleMesh b = ExtractMesh(restored, 0.5);
+    EXPECT_EQ(a.vertices, b.vertices);
+    EXPECT_EQ(a.triangles, b.triangles);
+    EXPECT_EQ(a.colors, b.colors);
+  }
+}
+
+TEST(TsdfVolume, RefusesTheStateOfOtherVoxels) {
+  const std::string state = StateOf(TsdfVolume({0.012, 0.05, 32}));
+  TsdfVolume volume(kOptions);
+  ExpectInputError([&] { Restore(state, &volume); },
+                   "state: section 'volume': voxel_size = 0.012");
 }
 
 TEST(TsdfVolume, WithoutColourTheShapeIsTheSame) {
