@@ -152,16 +152,18 @@ TEST(PrintedTable, IsNeverWiderThanTheTerminal) {
 TEST(RowFile, IsReadBackAsItWasWritten) {
   const TemporaryFolder folder;
   RowFile file(folder / "none.csv");
-  RowFile::Row row{"t_r0", "room", "", R"(x="a,b"; y=1)", {}};
+  RowFile::Row row{"t_r0", "room", "", R"(x="a,b"; y=1)", 1.5, {}};
   row.figures.At("ate_m") = 0.1;
   file.Set("0123", row);
   file.Write(folder / "rows.csv");
   const RowFile read(folder / "rows.csv");
-  ASSERT_NE(read.Find("0123"), nullptr);
-  EXPECT_EQ(read.Find("0123")->settings, row.settings);
-  EXPECT_EQ(read.Find("0123")->figures.At("ate_m"), 0.1);
-  EXPECT_TRUE(std::isnan(read.Find("0123")->figures.At("rpe_m")));
-  EXPECT_EQ(read.Find("4567"), nullptr);
+  ASSERT_NE(read.Find("0123", "room"), nullptr);
+  EXPECT_EQ(read.Find("0123", "room")->settings, row.settings);
+  EXPECT_EQ(read.Find("0123", "room")->figures.At("ate_m"), 0.1);
+  EXPECT_TRUE(std::isnan(read.Find("0123", "room")->figures.At("rpe_m")));
+  EXPECT_EQ(read.Find("0123", "room")->seconds, 1.5);
+  EXPECT_EQ(read.Find("0123", "desk"), nullptr);
+  EXPECT_EQ(read.Find("4567", "room"), nullptr);
   folder.Write("rows.csv", folder.Read("rows.csv") + "half,a\n");
   ExpectInputError([&] { RowFile(folder / "rows.csv"); }, "line 3");
 }

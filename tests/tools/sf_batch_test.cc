@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "support/program.h"
+#include "support/repository.h"
 #include "support/stub_programs.h"
 
 namespace splitfusion {
@@ -160,6 +161,41 @@ TEST_F(SfBatch, ADryRunPrintsTheTasks) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.output, HasSubstr("_r1  new\n2 new\n"));
   EXPECT_FALSE(folder_.Has("out"));
+}
+
+TEST_F(SfBatch, TakesTheAblationFile) {
+  const auto file = RepositoryRoot() / "tools/ablation.json";
+  if (!std::filesystem::exists(file) || !HasProgram("sf_run") ||
+      !HasProgram("sf_synth")) {
+    GTEST_SKIP() << "not built in the repository, or without its programs";
+  }
+  RunProgram("sf_synth", "--width=160 --height=120 --frames=2 --output=" +
+                             (folder_ / "sequence"));
+  const ProgramResult result = RunProgram(
+      "sf_batch", "run --experiment=" + file.string() +
+                      " --sequences=" + (folder_ / "sequence") +
+                      " --output=" + (folder_ / "out") + " --dry_run");
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr(" new\n"));
+}
+
+TEST_F(SfBatch, AnAblationComparesItsRowsAndKeepsThem) {
+  for (const char* name : {"room", "desk"}) AddSequence(name);
+  const std::string file = folder_.Write("ablation.json", R"({
+    "repeat": 2, "baseline": "all",
+    "rows": [{"name": "all"}, {"name": "no_bend", "set": {"bend": 0}},
+             {"name": "other", "set": {"other": 1}}]})");
+  const std::string arguments =
+      Arguments("room,desk", "out") + " --experiment=" + file +
+      " --rows=all,no_bend --rows_csv=" + (folder_ / "rows.csv");
+  const ProgramResult result = RunProgram("sf_batch", arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("Differences to all"));
+  EXPECT_THAT(result.output, HasSubstr("(all)     no_bend"));
+  std::filesystem::remove_all(folder_ / "out");
+  const std::string starts = folder_.Read("data/room/starts.txt");
+  EXPECT_EQ(RunProgram("sf_batch", arguments).output, result.output);
+  EXPECT_EQ(folder_.Read("data/room/starts.txt"), starts);
 }
 
 TEST_F(SfBatch, HelpFitsAScreen) {
