@@ -6,12 +6,14 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "experiment/sweep_fixture.h"
 #include "splitfusion/lib/experiment/foreign_results.h"
 #include "splitfusion/lib/experiment/result_files.h"
 #include "splitfusion/lib/report/run_marker.h"
 #include "support/expect_input_error.h"
+#include "support/repository.h"
 
 namespace splitfusion {
 namespace {
@@ -128,6 +130,15 @@ TEST_F(SweepTest, FilesHoldTheTable) {
                   "SELECT sequence, status, frames, \"terms.arap.weight\""
                   " * 2, f_score_seen, rpe_m FROM results ORDER BY 1"),
             "bad;failed;null;8.0;null;null;room;complete;10.0;8.0;0.5;null;");
+}
+
+TEST(Results, ColumnsAreDocumented) {
+  std::ifstream stream(RepositoryRoot() / "docs/experiments.md");
+  if (!stream) GTEST_SKIP() << "not built in the repository";
+  const std::string page{std::istreambuf_iterator<char>(stream), {}};
+  for (const std::string column : kFigureNames) {
+    EXPECT_THAT(page, HasSubstr("`" + column + "`"));
+  }
 }
 
 TEST_F(SweepTest, OtherSystemsAreRows) {
