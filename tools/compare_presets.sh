@@ -2,15 +2,16 @@
 # Runs every preset on every sequence and prints the errors against the ground
 # truth as a markdown table.
 #   tools/compare_presets.sh SEQUENCE... --output=DIR [further flags of sf_run]
-# Runs that are finished are kept, so that the command can be repeated. DIR has
-#   options/PRESET.flags             what each preset is run with
-#   SEQUENCE/PRESET/                 run directories, with pictures/
-#   SEQUENCE/pictures/FRAME_*.jpg    the presets side by side
-#   summary.csv, table.md            every figure; the table
+# Runs that are finished are kept, so that the command can be repeated. DIR is
+# the folder of an experiment of sf_batch (docs/experiments.md) and has
+#   tasks/TASK/run/                  run directories, with pictures/
+#   pictures/SEQUENCE/FRAME_*.jpg    the presets side by side
+#   results.csv, results.sqlite      every figure
+#   table.md                         the table
 # All presets are judged at the same reference frame of the tracks, the one in
 # which most true points are visible. Exit status as sf_batch: 0 done, 2 bad
-# usage, 3 if a run failed (its row is there, unless all did). SPLITFUSION_BIN: folder of the
-# programs, if not build/release/bin.
+# usage, 3 if a run failed (its row is there, unless all did). SPLITFUSION_BIN:
+# folder of the programs, if not build/release/bin.
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 bin="${SPLITFUSION_BIN:-$root/build/release/bin}"
@@ -41,102 +42,92 @@ done
 
 join() { local IFS=,; echo "$*"; }
 
-option_files=()
-write_options() {
-  mkdir -p "$output/options"
-  local preset file
-  for preset in "${presets[@]}"; do
-    file="$output/options/$preset.flags"
-    printf '%s\n' "--preset=$preset" "${flags[@]}" >"$file"
-    option_files+=("$file")
+# Flags of sf_run as sf_batch takes them: KEY="VALUE"; KEY="VALUE".
+settings() {
+  local flag text=
+  for flag in "${flags[@]}"; do
+    flag="${flag#-}"
+    flag="${flag#-}"
+    [[ "$flag" == *=* ]] || flag="$flag=true"
+    text+="${flag%%=*}=\"${flag#*=}\"; "
   done
+  echo "$text"
 }
 
-# sf_run looks at its flags before it looks for its sequence: here there is none.
-check_flags() {
-  local file said none="$output/options/no-sequence"
-  for file in "${option_files[@]}"; do
-    said="$("$bin/sf_run" --flagfile="$file" --sequence="$none" \
-      --output="$none" 2>&1 >/dev/null)" ||
-      [[ "$said" == *"$none: no such folder"* ]] || refuse "${said##*$'\n'}"
-  done
+# Prints the columns that are asked for by name, of the rows of results.csv.
+columns() {
+  awk -F, -v names="$*" '
+    NR == 1 { for (i = 1; i <= NF; ++i) place[$i] = i; n = split(names, name, " ") }
+    NR > 1 {
+      for (i = 1; i <= n; ++i) printf "%s%s", $place[name[i]], i < n ? "," : "\n"
+    }' "$output/results.csv"
 }
 
-# A message may hold commas, but comes after the columns that are looked at.
-some_run_finished() {
-  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "error") column = i }
-           NR > 1 && $column == "" { found = 1 }
-           END { exit !found }' "$output/summary.csv"
-}
-
-# Figures are counted from the end of a row: a message before them may hold
-# commas.
 print_table() {
-  awk -F, '
-    function mm(name) { return scaled(name, 1000, "%.1f") }
-    function percent(name) { return scaled(name, 100, "%.1f %%") }
-    function scaled(name, factor, format, value) {
-      value = $(NF - from_end[name])
-      return value == "" ? "-" : sprintf(format, factor * value)
-    }
-    NR == 1 {
-      for (i = 1; i <= NF; ++i) from_end[$i] = NF - i
-      print "| sequence | preset | ATE | background: error | complete |" \
-            " moving: right | view error | missing | surface error |" \
-            " F-score | track error, median | mean |"
-      print "|---|---|---|---|---|---|---|---|---|---|---|---|"
-      next
+  columns sequence preset ate_m surface_error_m view_error_m f_score_seen \
+    missing stretched ghosts tracks_median_m tracks_mean_m | awk -F, '
+    function mm(value) { return value == "" ? "-" : sprintf("%.1f", 1000 * value) }
+    function share(value) { return value == "" ? "-" : sprintf("%.1f %%", 100 * value) }
+    BEGIN {
+      print "| sequence | preset | ATE | moving: surface error | view error |" \
+            " F-score of what was seen | missing | stretched | ghosts |" \
+            " track error, median | mean |"
+      print "|---|---|---|---|---|---|---|---|---|---|---|"
     }
     {
-      print "| " $1 " | `" $2 "` | " mm("ate_rmse_m") \
-            " | " mm("background_accuracy_m") \
-            " | " percent("background_completeness") \
-            " | " percent("objects_right") " | " mm("objects_view_m") \
-            " | " percent("objects_uncovered") \
-            " | " mm("objects_accuracy_m") \
-            " | " percent("objects_f_score") \
-            " | " mm("track_median_m") " | " mm("track_mean_m") " |"
-    }' "$output/summary.csv"
+      print "| " $1 " | `" $2 "` | " mm($3) " | " mm($4) " | " mm($5) \
+            " | " share($6) " | " share($7) " | " share($8) " | " share($9) \
+            " | " mm($10) " | " mm($11) " |"
+    }'
 }
 
 # The picture of the same frame in all presets that have it, side by side.
 write_pictures() {
   local sequence="$1" kind="$2" name frame preset file tiles
-  for file in "$sequence"/splitfusion/pictures/*_"$kind".png; do
+  local -A run=()
+  while IFS=, read -r of preset task; do
+    [[ "$of" == "$sequence" ]] && run[$preset]="$output/tasks/$task/run"
+  done < <(columns sequence preset task)
+  for file in "${run[splitfusion]:-none}"/pictures/*_"$kind".png; do
     [[ -e "$file" ]] || continue
     name="${file##*/}"
     frame="${name%%_*}"
-    tiles=("input:$sequence/splitfusion/pictures/${frame}_input.png")
+    tiles=("input:${run[splitfusion]}/pictures/${frame}_input.png")
     for preset in "${presets[@]}"; do
-      file="$sequence/$preset/pictures/$name"
+      file="${run[$preset]:-none}/pictures/$name"
       [[ -e "$file" ]] && tiles+=("$preset:$file")
     done
-    mkdir -p "$sequence/pictures"
+    mkdir -p "$output/pictures/$sequence"
     "$bin/sf_montage" --pictures="$(join "${tiles[@]}")" --columns=3 \
-      --tile_width=320 --output="$sequence/pictures/${frame}_$kind.jpg"
+      --tile_width=320 --output="$output/pictures/$sequence/${frame}_$kind.jpg"
   done
 }
 
-write_options
-check_flags
 status=0
-"$bin/sf_batch" --sequences="$(join "${sequences[@]}")" --output="$output" \
-  --options="$(join "${option_files[@]}")" >"$output/batch.log" || status=$?
-((status == 0 || status == 3)) || exit "$status"
-if ! some_run_finished; then
-  echo "compare_presets.sh: every run failed; see $output/summary.csv and the" \
-    "*.err.log files beside" >&2
+mkdir -p "$output"
+"$bin/sf_batch" run --sequences="$(join "${sequences[@]}")" \
+  --grid="preset=$(join "${presets[@]}")" --set="$(settings)" \
+  --output="$output" >"$output/batch.log" 2>"$output/batch.err.log" ||
+  status=$?
+if ((status != 0 && status != 3)); then
+  refusal="$(tail -n 1 "$output/batch.err.log")"
+  echo "compare_presets.sh: ${refusal#sf_batch: }" >&2
+  exit "$status"
+fi
+if [[ "$(columns status)" != *complete* ]]; then
+  echo "compare_presets.sh: every run failed; see sf_batch status" \
+    "--output=$output" >&2
   exit "$status"
 fi
 
 print_table | tee "$output/table.md"
 echo
-echo "Distances in mm; '-': there is none. Right: pixels of moving instances" \
-  "with the model within 20 mm of the truth; missing: without a model."
+echo "Distances in mm; '-': there is none. Missing: pixels of moving instances" \
+  "without a model; docs/evaluation.md has the definitions."
 for sequence in "${sequences[@]}"; do
   name="$(basename "$(cd "$sequence" && pwd)")"
-  write_pictures "$output/$name" composite
-  write_pictures "$output/$name" normals
-  echo "Pictures: $output/$name/pictures"
+  write_pictures "$name" composite
+  write_pictures "$name" normals
+  echo "Pictures: $output/pictures/$name"
 done
 exit "$status"

@@ -32,6 +32,7 @@ DEFINE_string(grid, "", "What varies: \"KEY=V,V; KEY=V,V\".");
 DEFINE_string(set, "", "Options of all runs: \"KEY=V; KEY=V\".");
 DEFINE_int32(repeat, 0, "Runs of each, voxels moved by millionths; 0 = 1.");
 DEFINE_string(experiment, "", "JSON file of all that (docs/experiments.md).");
+DEFINE_string(rows, "", "Only these rows of --experiment, by name.");
 DEFINE_string(output, "", "Folder of the experiment.");
 DEFINE_int32(random, 0, "Random points; --grid: lo..hi, log:lo..hi, lists.");
 DEFINE_int32(seed, 1, "Of --random.");
@@ -76,6 +77,22 @@ int Cores() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
+/// Leaves the rows that --rows names.
+void SelectRows(Experiment* experiment) {
+  const std::vector<std::string> names = SplitOutsideQuotes(FLAGS_rows, ',');
+  if (names.empty()) return;
+  std::vector<NamedSettings> selected;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(
+        experiment->rows.begin(), experiment->rows.end(),
+        [&](const NamedSettings& row) { return row.name == name; });
+    CheckOption(found != experiment->rows.end(), "rows", name,
+                "a row of --experiment");
+    selected.push_back(*found);
+  }
+  experiment->rows = selected;
+}
+
 /// The experiment of --experiment, with what the other flags add to it.
 Experiment ExperimentFromFlags() {
   Experiment experiment;
@@ -99,6 +116,7 @@ Experiment ExperimentFromFlags() {
     experiment.seed = static_cast<std::uint64_t>(FLAGS_seed);
   }
   if (FLAGS_repeat != 0) experiment.repeat = FLAGS_repeat;
+  SelectRows(&experiment);
   if (!FLAGS_baseline.empty()) experiment.baseline = FLAGS_baseline;
   experiment.evaluate.SetAll(ParseSettings(FLAGS_evaluate, "evaluate"));
   return experiment;
@@ -201,7 +219,10 @@ void Collect(const std::string& baseline_flag) {
 int PrintDryRun(const Experiment& experiment, const SweepOptions& options) {
   std::map<std::string, int> counts;
   for (const auto& [task, what] : DryRun(experiment, options)) {
-    std::cout << task.name << "  " << what << '\n';
+    const std::string settings = SettingsText(task.settings);
+    std::cout << task.name << "  " << what
+              << (task.row.empty() ? "" : "  " + task.row)
+              << (settings.empty() ? "" : "  " + settings) << '\n';
     ++counts[what.substr(0, what.find(':'))];
   }
   std::string text;

@@ -10,8 +10,8 @@
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/experiment/settings.h"
 #include "splitfusion/lib/report/montage.h"
-#include "splitfusion/pipelines/batch_plan.h"
 #include "tool_main.h"
 
 DEFINE_string(pictures, "", "CAPTION:FILE,CAPTION:FILE,...");
@@ -59,7 +59,7 @@ int Run() {
   CheckOption(!FLAGS_pictures.empty(), "pictures", "''",
               "CAPTION:FILE,CAPTION:FILE,...");
   std::vector<MontageTile> tiles;
-  for (const std::string& text : SplitAtCommas(FLAGS_pictures)) {
+  for (const std::string& text : SplitOutsideQuotes(FLAGS_pictures, ',')) {
     tiles.push_back(ReadTile(text));
   }
   WritePicture(FLAGS_output, MakeMontage(tiles, FLAGS_columns));

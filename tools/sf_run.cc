@@ -45,21 +45,18 @@
 DEFINE_string(output, "", "Run directory to write.");
 DEFINE_bool(overwrite, false, "Replace an earlier run in --output.");
 DEFINE_bool(keep_same, false,
-            "With --overwrite: a finished run of the same options and input is "
-            "kept.");
+            "With --overwrite: but not a finished run of the same identity.");
 DEFINE_bool(resume, true, "Go on with an unfinished run of the same options.");
 DEFINE_int32(checkpoint_every, 0,
-             "Save the state every n-th frame; 0 = so that it costs 2 % of the "
-             "time, -1 = never.");
+             "Save the state every n-th frame; 0 = by time, -1 = never.");
 DEFINE_bool(
     keep_checkpoints, false,
-    "Keep the state of every checkpoint in RUN/checkpoints, for --from.");
+    "Keep all states in RUN/checkpoints, for --from.");
 DEFINE_string(from, "",
-              "Run with --keep_checkpoints whose state this one starts from, "
-              "with energy and solver of its own.");
+              "Start from the state of this run with --keep_checkpoints.");
 DEFINE_int32(at, 0, "First frame after that state.");
 DEFINE_bool(print_identity, false,
-            "Print what decides the result as JSON, and run nothing.");
+            "Print what decides the result, run nothing.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/evaluation/headline.h"
 #include "splitfusion/lib/experiment/run_state.h"
 
 namespace splitfusion {
@@ -52,10 +53,8 @@ void ReadHeadline(const std::string& run, Figures* figures) {
   if (headline == evaluation.end() || !headline->is_object()) {
     throw InputError("evaluation.json: expected an object 'headline'");
   }
-  for (const char* key : {"ate_m", "rpe_m", "rpe_deg", "tracks_mean_m",
-                          "tracks_median_m", "surface_error_m", "f_score_seen",
-                          "view_error_m", "missing", "stretched", "ghosts"}) {
-    figures->At(key) = NumberAt(*headline, key);
+  for (const HeadlineFigure& figure : kHeadlineFigures) {
+    figures->At(figure.name) = NumberAt(*headline, figure.name);
   }
 }
 

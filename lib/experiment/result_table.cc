@@ -184,8 +184,9 @@ void AddToRowFile(const ResultTable& table, const std::string& path) {
   RowFile file(path);
   for (const ResultRow& row : table.rows) {
     if (!row.IsComplete() || row.identity.empty()) continue;
-    file.Set(row.identity, {row.task.name, row.task.sequence, row.task.row,
-                            SettingsText(row.task.settings), row.figures});
+    file.Set(row.identity,
+             {row.task.name, row.task.sequence, row.task.row,
+              SettingsText(row.task.settings), row.wall_seconds, row.figures});
   }
   file.Write(path);
 }

@@ -2,7 +2,6 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -13,12 +12,13 @@
 namespace splitfusion {
 namespace {
 
-constexpr std::size_t kTextColumns = 5;
+constexpr std::size_t kTextColumns = 6;
 constexpr std::size_t kColumns = kTextColumns + kFigureNames.size();
 
 std::string HeadLine() {
   CsvRow row;
-  for (const char* name : {"identity", "task", "sequence", "row", "settings"}) {
+  for (const char* name :
+       {"identity", "task", "sequence", "row", "settings", "seconds"}) {
     row.Add(std::string(name));
   }
   for (const char* name : kFigureNames) row.Add(std::string(name));
@@ -70,30 +70,32 @@ RowFile::RowFile(const std::string& path) {
                        ": expected a row that sf_batch writes");
     }
     if (number == 1) continue;
-    rows_[fields[0]] = {fields[1], fields[2], fields[3], fields[4],
-                        ReadFigures(fields)};
+    Set(fields[0],
+        {fields[1], fields[2], fields[3], fields[4],
+         std::strtod(fields[5].c_str(), nullptr), ReadFigures(fields)});
   }
 }
 
-const RowFile::Row* RowFile::Find(const std::string& identity) const {
-  const auto found = rows_.find(identity);
+const RowFile::Row* RowFile::Find(const std::string& identity,
+                                  const std::string& sequence) const {
+  const auto found = rows_.find({identity, sequence});
   return found == rows_.end() ? nullptr : &found->second;
 }
 
 void RowFile::Set(const std::string& identity, const Row& row) {
-  rows_[identity] = row;
+  rows_[{identity, row.sequence}] = row;
 }
 
 void RowFile::Write(const std::string& path) const {
-  std::set<std::pair<std::string, std::string>> order;
-  for (const auto& [identity, row] : rows_) order.emplace(row.task, identity);
+  std::map<std::pair<std::string, std::string>, const Row*> order;
+  for (const auto& [key, row] : rows_) order[{row.task, key.first}] = &row;
   WriteFileAtomically(path, [&](std::ostream& out) {
     out << HeadLine() << '\n';
-    for (const auto& [task, identity] : order) {
-      const Row& row = rows_.at(identity);
+    for (const auto& [key, known] : order) {
+      const Row& row = *known;
       CsvRow line;
-      line.Add(identity).Add(row.task).Add(row.sequence).Add(row.row);
-      line.Add(row.settings);
+      line.Add(key.second).Add(row.task).Add(row.sequence).Add(row.row);
+      line.Add(row.settings).Add(row.seconds);
       for (const double value : row.figures.values) line.Add(value);
       out << line.text() << '\n';
     }

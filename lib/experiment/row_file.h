@@ -3,13 +3,15 @@
 
 #include <map>
 #include <string>
+#include <utility>
 
 #include "splitfusion/lib/experiment/figures.h"
 
 namespace splitfusion {
 
 /// Figures of finished runs by their identity, in a small CSV file that
-/// outlives the run directories: identity, task, settings, and the figures.
+/// outlives the run directories: identity, sequence, task, settings, and the
+/// figures.
 class RowFile {
  public:
   /// One run.
@@ -18,6 +20,7 @@ class RowFile {
     std::string sequence;  ///< Name of the sequence.
     std::string row;       ///< Name of the row.
     std::string settings;  ///< As SettingsText().
+    double seconds = 0;    ///< Of the whole run, wall clock.
     Figures figures;       ///< All that are known.
   };
 
@@ -29,9 +32,11 @@ class RowFile {
 
   /// Whether there is no row.
   bool empty() const { return rows_.empty(); }
-  /// The row of an identity; null if there is none.
-  const Row* Find(const std::string& identity) const;
-  /// Adds a row, or replaces the one of the same identity.
+  /// The row of an identity and a sequence; null if there is none. The same
+  /// images may be judged by another truth under another name.
+  const Row* Find(const std::string& identity,
+                  const std::string& sequence) const;
+  /// Adds a row, or replaces the one of the same identity and sequence.
   void Set(const std::string& identity, const Row& row);
   /// Writes all rows, in the order of their tasks.
   ///
@@ -39,7 +44,8 @@ class RowFile {
   void Write(const std::string& path) const;
 
  private:
-  std::map<std::string, Row> rows_;
+  /// By identity and sequence.
+  std::map<std::pair<std::string, std::string>, Row> rows_;
 };
 
 }  // namespace splitfusion

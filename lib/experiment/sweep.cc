@@ -182,7 +182,7 @@ void MakeFolder(const std::string& folder) {
 void SweepOptions::Check() const {
   constexpr int kMostJobs = 1024;
   CheckOption(!output.empty(), "output", "''", "a folder");
-  CheckOption(jobs >= 1 && jobs <= kMostJobs, "jobs", jobs, "1 to 1024");
+  CheckOption(jobs >= 1 && jobs <= kMostJobs, "jobs", jobs, "1..1024");
   CheckOption(threads >= 0, "threads", threads, "at least 0");
   const ChildLimits& limits = runner.limits;
   CheckOption(limits.wall_seconds >= 0, "max_wall_minutes",

@@ -107,10 +107,11 @@ bool TaskRunner::TakeRecorded(TaskRecord* record) const try {
   }
   const std::string identity = command_.Ask(task).Hash();
   if (was_recorded && record->identity == identity) return true;
-  const RowFile::Row* row = rows_.Find(identity);
+  const RowFile::Row* row = rows_.Find(identity, task.sequence);
   if (row == nullptr) return false;
   record->identity = identity;
   record->figures = row->figures;
+  record->wall_seconds = row->seconds;
   record->state = TaskState::kRecorded;
   record->last_lines.clear();
   record->exit_code = 0;

@@ -79,7 +79,8 @@ void WriteText(const std::string& path, const std::string& text) {
 bool IsComplete(const RunPaths& paths) {
   std::ifstream stream(paths.Summary());
   const auto summary = nlohmann::json::parse(stream, nullptr, false);
-  return summary.is_object() && summary.value("complete", false);
+  return summary.is_object() && summary.contains("complete") &&
+         summary["complete"] == true;
 }
 
 RunDirectory::RunDirectory(const std::string& root, RunFacts facts,

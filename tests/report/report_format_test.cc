@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/pipelines/batch_summary.h"
 #include "support/program.h"
 #include "support/repository.h"
 #include "support/temporary_folder.h"
@@ -175,12 +174,6 @@ TEST_F(ReportFormat, HasTheColumnsOfTheIterationsInTheirOrder) {
   std::getline(lines, header);
   std::replace(header.begin(), header.end(), ',', '|');
   EXPECT_EQ(Section("iterations.csv").order(), Cells("|" + header));
-}
-
-TEST_F(ReportFormat, HasTheKeysOfABatch) {
-  Keys keys;
-  CollectKeys(Json(ToJson(std::vector<BatchResult>(1))), "", &keys);
-  EXPECT_EQ(Section("Files of a batch").keys(), keys);
 }
 
 }  // namespace

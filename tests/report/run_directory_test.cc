@@ -107,6 +107,8 @@ TEST(RunDirectory, TheSummarySaysWhetherTheRunIsComplete) {
   EXPECT_FALSE(IsComplete(paths));
   run.Finish();
   EXPECT_TRUE(IsComplete(paths));
+  folder.Write("run/summary.json", "{\"complete\": \"yes\"}");
+  EXPECT_FALSE(IsComplete(paths));
 }
 
 TEST(RunDirectory, GoesOnFromItsState) {

@@ -30,7 +30,7 @@ for argument in "$@"; do
     *) parts="$parts, \"$key\": \"$(escaped "$value")\"" ;;
   esac
 done
-parts="{\"object_voxel\": \"$object\", \"background_voxel\": \"$background\"$parts}"
+parts="{\"input\": \"${sequence##*/}\", \"object_voxel\": \"$object\", \"background_voxel\": \"$background\"$parts}"
 if [ -n "$ask" ]; then
   echo "{\"identity\": \"x\", \"identity_parts\": $parts, \"outputs\": {}}"
   exit 0

@@ -14,21 +14,23 @@ namespace splitfusion {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// Two runs: one with every figure, one that failed with commas in its message.
+// Two runs: one with every figure, one that failed.
 constexpr const char* kFakeBatch = R"(#!/bin/sh
 for argument in "$@"; do
   case "$argument" in --output=*) output="${argument#*=}" ;; esac
 done
 echo "$@" > "$output/arguments.txt"
-mkdir -p "$output/room/splitfusion/pictures" "$output/room/cofusion/pictures"
-touch "$output/room/splitfusion/pictures/000010_composite.png"
-touch "$output/room/cofusion/pictures/000010_composite.png"
-cat > "$output/summary.csv" <<END
-sequence,options,error,ate_rmse_m,background_accuracy_m,background_completeness,objects_view_m,objects_right,objects_uncovered,objects_accuracy_m,objects_f_score,track_median_m,track_mean_m,seconds_median
-room,splitfusion,,0.0125,0.004,0.75,0.005,0.5,0.25,0.006,0.625,0.007,0.008,1
-room,cofusion,"no, none",,,,,,,,,,,
+for run in a b; do
+  mkdir -p "$output/tasks/$run/run/pictures"
+  touch "$output/tasks/$run/run/pictures/000010_composite.png"
+done
+cat > "$output/results.csv" <<END
+task,sequence,repeat,status,preset,ate_m,tracks_mean_m,tracks_median_m,surface_error_m,f_score_seen,view_error_m,missing,stretched,ghosts
+a,room,0,complete,splitfusion,0.0125,0.008,0.007,0.006,0.625,0.005,0.25,0.01,0.02
+b,room,0,failed,cofusion,,,,,,,,,
 END
 exit 3
 )";
@@ -73,27 +75,25 @@ class ComparePresets : public testing::Test {
 
 TEST_F(ComparePresets, PrintsTheFiguresOfEveryPreset) {
   const std::string out = folder_ / "out";
-  EXPECT_EQ(Run((folder_ / "room") + " --max_frames=9 --output=" + out), 3);
+  EXPECT_EQ(
+      Run((folder_ / "room") + " --max_frames=9 --full_report --output=" + out),
+      3);
   const std::string said = folder_.Read("said.txt");
-  EXPECT_THAT(
-      said, HasSubstr("| room | `splitfusion` | 12.5 | 4.0 | 75.0 % | "
-                      "50.0 % | 5.0 | 25.0 % | 6.0 | 62.5 % | 7.0 | 8.0 |\n"));
+  EXPECT_THAT(said, HasSubstr("| room | `splitfusion` | 12.5 | 6.0 | 5.0 | "
+                              "62.5 % | 25.0 % | 1.0 % | 2.0 % | 7.0 | 8.0 |"));
   EXPECT_THAT(said, HasSubstr("| room | `cofusion` | - | - | - | - | "
-                              "- | - | - | - | - | - |\n"));
+                              "- | - | - | - | - |\n"));
   EXPECT_THAT(
       folder_.Read("out/arguments.txt"),
-      HasSubstr("kinectfusion.flags," + out + "/options/dynamicfusion.flags," +
-                out + "/options/cofusion.flags," + out +
-                "/options/background_only.flags," + out +
-                "/options/splitfusion.flags"));
-  EXPECT_EQ(folder_.Read("out/options/cofusion.flags"),
-            "--preset=cofusion\n--max_frames=9\n");
-  const std::string run = out + "/room/";
-  EXPECT_EQ(folder_.Read("out/room/pictures/000010_composite.jpg"),
-            "input:" + run +
-                "splitfusion/pictures/000010_input.png,cofusion:" + run +
-                "cofusion/pictures/000010_composite.png,splitfusion:" + run +
-                "splitfusion/pictures/000010_composite.png\n");
+      AllOf(HasSubstr("--grid=preset=kinectfusion,dynamicfusion,cofusion,"
+                      "background_only,splitfusion "),
+            HasSubstr("--set=max_frames=\"9\"; full_report=\"true\"; ")));
+  const std::string tasks = out + "/tasks/";
+  EXPECT_EQ(folder_.Read("out/pictures/room/000010_composite.jpg"),
+            "input:" + tasks +
+                "a/run/pictures/000010_input.png,cofusion:" + tasks +
+                "b/run/pictures/000010_composite.png,splitfusion:" + tasks +
+                "a/run/pictures/000010_composite.png\n");
 }
 
 TEST_F(ComparePresets, HelpIsItsLeadingComment) {
@@ -113,25 +113,13 @@ TEST_F(ComparePresets, SaysWhatIsMissing) {
   EXPECT_THAT(folder_.Read("said.txt"), HasSubstr("sf_montage: not found"));
 }
 
-TEST_F(ComparePresets, AWrongFlagEndsItBeforeAnyRun) {
-  Program("sf_run",
-          "#!/bin/sh\necho noise >&2\necho 'sf_run: --n = 1: no' >&2\nexit 2");
+TEST_F(ComparePresets, AWrongFlagEndsIt) {
+  Program(
+      "sf_batch",
+      "#!/bin/sh\necho noise >&2\necho 'sf_batch: --n = 1: no' >&2\nexit 2");
   EXPECT_EQ(Run((folder_ / "room") + " --n=1 --output=" + (folder_ / "out")),
             2);
-  EXPECT_EQ(folder_.Read("said.txt"),
-            "compare_presets.sh: sf_run: --n = 1: no\n");
-  EXPECT_FALSE(folder_.Has("out/arguments.txt"));
-  // That its stand-in for a sequence is missing is right.
-  Program("sf_run", R"(#!/bin/sh
-for argument in "$@"; do
-  case "$argument" in --sequence=*) sequence="${argument#*=}" ;; esac
-done
-echo "sf_run: $sequence: no such folder: expected a sequence" >&2
-exit 2
-)");
-  EXPECT_EQ(Run((folder_ / "room") + " --n=1 --output=" + (folder_ / "out")),
-            3);
-  EXPECT_TRUE(folder_.Has("out/arguments.txt"));
+  EXPECT_EQ(folder_.Read("said.txt"), "compare_presets.sh: --n = 1: no\n");
 }
 
 TEST_F(ComparePresets, IsNoTableWhereEveryRunFailed) {
@@ -139,14 +127,15 @@ TEST_F(ComparePresets, IsNoTableWhereEveryRunFailed) {
 for argument in "$@"; do
   case "$argument" in --output=*) output="${argument#*=}" ;; esac
 done
-printf 'sequence,error,ate_rmse_m\nroom,no masks,\nroom,"no, none",\n' \
-    > "$output/summary.csv"
+printf 'sequence,status,ate_m\nroom,failed,\nroom,failed,\n' \
+    > "$output/results.csv"
 exit 3
 )");
   EXPECT_EQ(Run((folder_ / "room") + " --output=" + (folder_ / "out")), 3);
   EXPECT_EQ(folder_.Read("said.txt"),
-            "compare_presets.sh: every run failed; see " + (folder_ / "out") +
-                "/summary.csv and the *.err.log files beside\n");
+            "compare_presets.sh: every run failed; see sf_batch status "
+            "--output=" +
+                (folder_ / "out") + "\n");
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST_F(FlagMessages, NameTheFlagOfAnOptionOfTheSameName) {
   RunRefuses("--merge_touching=person",
              "--merge_touching = person: expected entries of at least two");
   RunRefuses("--intrinsics=0,1,1,1,64,48", "--intrinsics=0,1,1,1,64,48: camer");
-  ExpectRefused("sf_batch", "--jobs=0 --sequences=. --output=none",
+  ExpectRefused("sf_batch", "run --jobs=0 --sequences=. --output=none",
                 "--jobs = 0: expected 1..");
   ExpectRefused("sf_synth", "--output=none --scene=moon",
                 "--scene = moon: expected one of room_person");
@@ -83,7 +83,7 @@ TEST_F(FlagMessages, NumbersThatNoMachineCouldServeAreRefused) {
   RunRefuses("--threads=100000000", "--threads = 100000000: expected 1..1024");
   RunRefuses("--threads=-1", "--threads = -1: expected 1..1024, or 0");
   RunRefuses("--solver_threads=2000000000", "--solver_threads = 2000000000");
-  ExpectRefused("sf_batch", "--jobs=100000000 --sequences=. --output=none",
+  ExpectRefused("sf_batch", "run --jobs=100000000 --sequences=. --output=none",
                 "--jobs = 100000000: expected 1..1024");
   ExpectRefused("sf_evaluate", "--run=none --samples=2000000000",
                 "--samples = 2000000000: expected 1..");

@@ -27,7 +27,8 @@ constexpr int kFrames = 60;
 class Interruption : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const char* program : {"sf_synth", "sf_run", "sf_batch"}) {
+    for (const char* program :
+         {"sf_synth", "sf_run", "sf_evaluate", "sf_batch"}) {
       if (!HasProgram(program)) GTEST_SKIP() << program << " is not built";
     }
     const ProgramResult result = RunProgram(
@@ -66,6 +67,19 @@ class Interruption : public ::testing::Test {
     std::this_thread::sleep_for(std::chrono::milliseconds(pause_ms));
     program->Send(second);
     return program->Wait();
+  }
+
+  /// Of a batch over the sequence.
+  std::string BatchArguments(const std::string& more) const {
+    return "run --sequences=" + (folder_ / "sequence") +
+           " --output=" + (folder_ / "out") + more;
+  }
+
+  /// Folder of the first task of such a batch.
+  std::string FirstTask(const std::string& more) const {
+    const std::string planned =
+        RunProgram("sf_batch", BatchArguments(more) + " --dry_run").output;
+    return "out/tasks/" + planned.substr(0, planned.find(' '));
   }
 
   /// Whether anything still runs whose command line names this run directory.
@@ -126,19 +140,19 @@ class TwoSignals : public Interruption,
 
 TEST_P(TwoSignals, EndABatchAndItsRun) {
   const auto [second, pause_ms] = GetParam();
-  RunningProgram program("sf_batch", "--sequences=" + (folder_ / "sequence") +
-                                         " --output=" + (folder_ / "out"));
-  const std::string run = "out/sequence/default";
+  const std::string task = FirstTask("");
+  RunningProgram program("sf_batch", BatchArguments(""));
+  const std::string run = task + "/run";
   const ProgramResult result =
       InterruptTwice(&program, run, SIGINT, second, pause_ms);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.errors, HasSubstr("interrupted after 0 of 1 runs"));
   EXPECT_FALSE(IsAtWork(run));
-  const Json batch = Json::parse(folder_.Read("out/summary.json"));
-  ASSERT_EQ(batch.size(), 1u);
+  EXPECT_THAT(folder_.Read("out/results.csv"), HasSubstr(",0,unfinished,"));
   // A run that is quick enough ends by the first signal.
+  const Json record = Json::parse(folder_.Read(task + "/task.json"));
   const bool at_first = folder_.Has(run + "/summary.json");
-  EXPECT_EQ(batch[0]["exit_code"], at_first ? 1 : 128 + SIGKILL);
+  EXPECT_EQ(record["exit_code"], at_first ? 1 : 128 + SIGKILL);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfAnyKind, TwoSignals,
@@ -146,25 +160,25 @@ INSTANTIATE_TEST_SUITE_P(OfAnyKind, TwoSignals,
                                          std::pair(SIGTERM, 0),
                                          std::pair(SIGHUP, 5)));
 
-TEST_F(Interruption, ABatchStopsItsRunAndRecordsIt) {
-  const std::string options =
-      folder_.Write("first.flags", "--pictures_every=0\n") + "," +
-      folder_.Write("second.flags", "--pictures_every=0\n");
-  RunningProgram program("sf_batch", "--sequences=" + (folder_ / "sequence") +
-                                         " --options=" + options +
-                                         " --output=" + (folder_ / "out"));
-  const std::string run = "out/sequence/first";
+TEST_F(Interruption, ABatchStopsItsRunAndGoesOnWithIt) {
+  const std::string grid = " --grid=pictures_every=0,20";
+  const std::string task = FirstTask(grid);
+  RunningProgram program("sf_batch", BatchArguments(grid));
+  const std::string run = task + "/run";
   const ProgramResult result = Interrupt(&program, run);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.errors, HasSubstr("interrupted after 0 of 2 runs"));
   ExpectUnfinished(run);
-  const Json batch = Json::parse(folder_.Read("out/summary.json"));
-  ASSERT_EQ(batch.size(), 1u);
-  EXPECT_EQ(batch[0]["options"], "first");
-  EXPECT_EQ(batch[0]["exit_code"], 1);
-  EXPECT_THAT(batch[0]["error"].get<std::string>(),
+  const Json record = Json::parse(folder_.Read(task + "/task.json"));
+  EXPECT_EQ(record["state"], "started");
+  EXPECT_EQ(record["exit_code"], 1);
+  EXPECT_THAT(record["last_lines"].back().get<std::string>(),
               HasSubstr("interrupted after "));
-  EXPECT_FALSE(folder_.Has("out/sequence/second"));
+  EXPECT_THAT(folder_.Read("out/results.csv"), HasSubstr(",0,waiting,20,"));
+  EXPECT_EQ(RunProgram("sf_batch", BatchArguments(grid)).exit_code, 0);
+  const Json summary = Json::parse(folder_.Read(run + "/summary.json"));
+  EXPECT_EQ(summary["frames"], kFrames);
+  EXPECT_EQ(summary["resumed_at"].size(), 1u);
 }
 
 }  // namespace

@@ -1,0 +1,172 @@
+#include "splitfusion/lib/experiment/result_statistics.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "splitfusion/lib/experiment/printed_table.h"
+#include "splitfusion/lib/experiment/row_file.h"
+#include "support/expect_input_error.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+ResultRow Row(const std::string& sequence, const std::string& weight,
+              int repeat, double ate) {
+  ResultRow row;
+  row.task.sequence = sequence;
+  row.task.settings.Set("weight", weight);
+  row.task.design = {"weight"};
+  row.task.repeat = repeat;
+  row.values = {weight};
+  row.status = "complete";
+  row.figures.At("ate_m") = ate;
+  row.wall_seconds = 2;
+  return row;
+}
+
+/// Two sequences, two weights, two repeats; the second run of b/8 failed.
+ResultTable Sample() {
+  ResultTable table;
+  table.keys = table.design = {"weight"};
+  table.rows = {Row("a", "4", 0, 0.010), Row("a", "4", 1, 0.020),
+                Row("a", "8", 0, 0.013), Row("a", "8", 1, 0.025),
+                Row("b", "4", 0, 0.100), Row("b", "4", 1, 0.200),
+                Row("b", "8", 0, 0.101), Row("b", "8", 1, 0.0)};
+  table.rows.back().status = "failed";
+  table.rows.back().figures = Figures();
+  return table;
+}
+
+const Spread& Ate(const ResultGroup& group) { return group.figures[2]; }
+
+TEST(ResultStatistics, RepeatsHaveMeanAndScatter) {
+  const auto groups = GroupResults(Sample());
+  ASSERT_EQ(groups.size(), 4u);
+  EXPECT_EQ(Ate(groups[0]).count, 2);
+  EXPECT_NEAR(Ate(groups[0]).mean, 0.015, 1e-12);
+  EXPECT_NEAR(Ate(groups[0]).standard_deviation, 0.005 * std::sqrt(2), 1e-12);
+  EXPECT_EQ(groups[3].runs, 1);
+  EXPECT_EQ(groups[3].planned, 2);
+  EXPECT_TRUE(std::isnan(Ate(groups[3]).standard_deviation));
+}
+
+TEST(ResultStatistics, DifferencesArePairedBySequenceAndRepeat) {
+  const auto groups = CompareWithBaseline(Sample(), "weight=4");
+  ASSERT_EQ(groups.size(), 3u);
+  EXPECT_EQ(groups[0].sequence, "a");
+  EXPECT_NEAR(Ate(groups[0]).mean, 0.004, 1e-12);
+  EXPECT_NEAR(Ate(groups[0]).StandardError(), 0.001, 1e-12);
+  EXPECT_EQ(groups[1].runs, 1);
+  EXPECT_EQ(groups[2].sequence, kAllSequences);
+  EXPECT_EQ(groups[2].runs, 3);
+  EXPECT_NEAR(Ate(groups[2]).mean, 0.003, 1e-12);
+  EXPECT_EQ(groups[2].seconds.mean, 2);
+}
+
+TEST(ResultStatistics, OtherDesignKeysStayTheSame) {
+  ResultTable table = Sample();
+  table.keys = table.design = {"weight", "voxel"};
+  table.rows.clear();
+  for (const char* voxel : {"1", "2"}) {
+    for (const char* weight : {"4", "8"}) {
+      const double ate = std::atof(voxel) * std::atof(weight);
+      table.rows.push_back(Row("a", weight, 0, ate));
+      table.rows.back().task.settings.Set("voxel", voxel);
+      table.rows.back().values.emplace_back(voxel);
+    }
+  }
+  const auto groups = CompareWithBaseline(table, "weight=4");
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(Ate(groups[0]).mean, 4);
+  EXPECT_EQ(Ate(groups[1]).mean, 8);
+}
+
+TEST(ResultStatistics, RowsAreComparedByName) {
+  ResultTable table = Sample();
+  table.keys = {"row", "weight"};
+  table.design.clear();
+  table.rows = {Row("a", "4", 0, 0.1), Row("a", "8", 0, 0.3)};
+  table.rows[0].task.row = "base";
+  table.rows[1].task.row = "stiff";
+  table.rows[0].values = {"base", "4"};
+  table.rows[1].values = {"stiff", "8"};
+  const auto groups = CompareWithBaseline(table, "base");
+  ASSERT_EQ(groups.size(), 1u);
+  EXPECT_NEAR(Ate(groups[0]).mean, 0.2, 1e-12);
+  ExpectInputError([&] { CompareWithBaseline(table, "none"); }, "baseline");
+  ExpectInputError([&] { CompareWithBaseline(table, "x=1"); }, "x does not");
+}
+
+void ExpectWidth(const std::string& text, std::size_t width) {
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    EXPECT_LE(line.size(), width) << line;
+  }
+}
+
+TEST(PrintedTable, ShowsWhatVariesAndIsKnown) {
+  const ResultTable table = Sample();
+  const std::string text = PrintedSummary(table, GroupResults(table), 80);
+  EXPECT_THAT(text, HasSubstr("sequence  weight    n         ATE mm\n"));
+  EXPECT_THAT(text, HasSubstr("a         4         2    15.00+-7.07\n"));
+  EXPECT_THAT(text, HasSubstr("1/2"));
+  EXPECT_THAT(text, Not(HasSubstr("ghosts")));
+  const std::string differences = PrintedDifferences(
+      table, CompareWithBaseline(table, "weight=4"), "weight=4", 80);
+  EXPECT_THAT(differences, HasSubstr("+4.00+-1.00"));
+  EXPECT_THAT(differences, HasSubstr("(all)"));
+}
+
+TEST(PrintedTable, IsNeverWiderThanTheTerminal) {
+  ResultTable table = Sample();
+  for (int i = 0; i < 6; ++i) {
+    table.keys.push_back("terms.point_to_plane.scale" + std::to_string(i));
+  }
+  int number = 0;
+  for (ResultRow& row : table.rows) {
+    row.task.sequence += "_a_sequence_with_quite_a_long_name_of_its_own";
+    row.figures.values.fill(1.2345e-3);
+    while (row.values.size() < table.keys.size()) {
+      row.values.push_back("point_to_plane(weight=1,loss=tukey,scale=0.03)" +
+                           std::to_string(++number));
+    }
+  }
+  for (const std::size_t width : {20u, 40u, 80u, 120u, 300u}) {
+    const auto groups = GroupResults(table);
+    const std::string text = PrintedSummary(table, groups, width);
+    ExpectWidth(text, width);
+    ExpectWidth(PrintedDifferences(table, groups, "weight=4", width), width);
+    if (width < 80) continue;
+    EXPECT_THAT(text, HasSubstr("F seen %"));
+    EXPECT_THAT(text, HasSubstr("Not shown (in the files):"));
+  }
+}
+
+TEST(RowFile, IsReadBackAsItWasWritten) {
+  const TemporaryFolder folder;
+  RowFile file(folder / "none.csv");
+  RowFile::Row row{"t_r0", "room", "", R"(x="a,b"; y=1)", 1.5, {}};
+  row.figures.At("ate_m") = 0.1;
+  file.Set("0123", row);
+  file.Write(folder / "rows.csv");
+  const RowFile read(folder / "rows.csv");
+  ASSERT_NE(read.Find("0123", "room"), nullptr);
+  EXPECT_EQ(read.Find("0123", "room")->settings, row.settings);
+  EXPECT_EQ(read.Find("0123", "room")->figures.At("ate_m"), 0.1);
+  EXPECT_TRUE(std::isnan(read.Find("0123", "room")->figures.At("rpe_m")));
+  EXPECT_EQ(read.Find("0123", "room")->seconds, 1.5);
+  EXPECT_EQ(read.Find("0123", "desk"), nullptr);
+  EXPECT_EQ(read.Find("4567", "room"), nullptr);
+  folder.Write("rows.csv", folder.Read("rows.csv") + "half,a\n");
+  ExpectInputError([&] { RowFile(folder / "rows.csv"); }, "line 3");
+}
+
+}  // namespace
+}  // namespace splitfusion
