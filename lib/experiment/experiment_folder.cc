@@ -39,7 +39,9 @@ std::vector<Experiment> SavedExperiments(const ExperimentFolder& folder) {
     const fs::path path = fs::path(folder.Experiments()) / name;
     if (path.extension() != ".json") continue;
     try {
-      experiments.push_back(SavedExperiment(ReadJsonOrNull(path.string())));
+      const Experiment saved = SavedExperiment(ReadJsonOrNull(path.string()));
+      PlanTasks(saved);  // Throws where it is damaged.
+      experiments.push_back(saved);
     } catch (const InputError&) {
       continue;
     }

@@ -14,6 +14,7 @@ class ExperimentFolder {
   /// Nothing is touched on disk.
   explicit ExperimentFolder(std::string root);
 
+  /// DIR
   const std::string& root() const { return root_; }
   std::string Experiments() const;  ///< DIR/experiments
   std::string Tasks() const;        ///< DIR/tasks

@@ -35,6 +35,29 @@ std::string JoinedOptions(const std::vector<std::string>& options) {
   return text;
 }
 
+/// Runs `sf_run --print_identity`.
+RunIdentity AskProgram(std::vector<std::string> arguments,
+                       const std::string& sequence) {
+  const ScratchFolder folder;
+  arguments.push_back("--print_identity");
+  arguments.push_back("--sequence=" + sequence);
+  arguments.push_back("--output=" + folder.path() + "/run");
+  const ChildResult child = RunChild(arguments, folder.path() + "/ask");
+  if (child.exit_code != 0) {
+    throw InputError(child.last_lines.empty()
+                         ? arguments.front() + " --print_identity: failed"
+                         : child.LastLine());
+  }
+  try {
+    const Json json = Json::parse(std::ifstream(folder.path() + "/ask.log"));
+    return {json.at("identity_parts").get<NamedValues>(),
+            json.at("outputs").get<NamedValues>()};
+  } catch (const Json::exception&) {
+    throw InputError(arguments.front() +
+                     " --print_identity: expected JSON with identity_parts");
+  }
+}
+
 }  // namespace
 
 Settings ShiftVoxels(const NamedValues& parts, int repeat) {
@@ -101,32 +124,6 @@ std::vector<std::string> RunCommand::Run(const Task& task,
   arguments.push_back("--output=" + run);
   return arguments;
 }
-
-namespace {
-
-RunIdentity AskProgram(std::vector<std::string> arguments,
-                       const std::string& sequence) {
-  const ScratchFolder folder;
-  arguments.push_back("--print_identity");
-  arguments.push_back("--sequence=" + sequence);
-  arguments.push_back("--output=" + folder.path() + "/run");
-  const ChildResult child = RunChild(arguments, folder.path() + "/ask");
-  if (child.exit_code != 0) {
-    throw InputError(child.last_lines.empty()
-                         ? arguments.front() + " --print_identity: failed"
-                         : child.LastLine());
-  }
-  try {
-    const Json json = Json::parse(std::ifstream(folder.path() + "/ask.log"));
-    return {json.at("identity_parts").get<NamedValues>(),
-            json.at("outputs").get<NamedValues>()};
-  } catch (const Json::exception&) {
-    throw InputError(arguments.front() +
-                     " --print_identity: expected JSON with identity_parts");
-  }
-}
-
-}  // namespace
 
 RunIdentity RunCommand::AskPlain(const Task& task) const {
   const std::vector<std::string> arguments = Plain(task);

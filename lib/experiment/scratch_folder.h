@@ -29,6 +29,7 @@ class ScratchFolder {
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
+  /// Where it is.
   const std::string& path() const { return path_; }
 
  private:

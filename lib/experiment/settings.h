@@ -21,7 +21,9 @@ class Settings {
   /// Value of a key; null if it is not set.
   const std::string* Find(const std::string& key) const;
 
+  /// All, in their order.
   const std::vector<Entry>& entries() const { return entries_; }
+  /// Whether nothing is set.
   bool empty() const { return entries_.empty(); }
 
  private:

@@ -40,7 +40,8 @@ struct TaskRecord {
   double cpu_seconds = 0;              ///< Of the run that counts.
   std::int64_t peak_memory_bytes = 0;  ///< Of the run that counts.
   std::string host;                    ///< That worked on it last.
-  std::string started, ended;          ///< UTC, ISO 8601.
+  std::string started;                 ///< UTC, ISO 8601.
+  std::string ended;                   ///< The same; empty while it is at work.
   std::string identity;                ///< Of the run that counts.
   Figures figures;                     ///< Of a recorded one.
 
