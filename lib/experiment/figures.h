@@ -37,6 +37,7 @@ struct Figures {
 
   /// A figure by its name, one of kFigureNames.
   double& At(const std::string& name);
+  /// The same.
   double At(const std::string& name) const;
 };
 

@@ -20,6 +20,7 @@ struct ResultRow {
   std::string identity;             ///< Of a complete one; may be empty.
   double wall_seconds = 0;          ///< Of the whole run.
 
+  /// Whether its figures count.
   bool IsComplete() const { return status == "complete"; }
 };
 
