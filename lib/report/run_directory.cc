@@ -1,5 +1,7 @@
 #include "splitfusion/lib/report/run_directory.h"
 
+#include <algorithm>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -110,7 +112,9 @@ void RunDirectory::WriteHeads() {
 template <typename Archive>
 void RunDirectory::Serialize(Archive* archive) {
   archive->Section("run directory");
-  (*archive)(builder_, seconds_writing_);
+  double cpu_seconds = CpuSeconds();
+  (*archive)(builder_, seconds_writing_, cpu_seconds);
+  if constexpr (Archive::kReads) cpu_seconds_before_ = cpu_seconds;
   for (const auto& [path, stream] : Streams()) {
     std::uint64_t size = stream->tellp();
     (*archive)(size);
@@ -135,11 +139,17 @@ void RunDirectory::AddFrame(const FrameReport& report, const TimedPose& pose) {
   seconds_writing_ += stopwatch.Seconds();
 }
 
+double RunDirectory::CpuSeconds() const {
+  return cpu_seconds_before_ +
+         static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
 RunSummary RunDirectory::Summary() const {
   RunSummary summary = builder_.Build();
   summary.preset = facts_.preset;
   summary.versions = facts_.versions;
   summary.seconds_writing = seconds_writing_;
+  summary.cpu_seconds_per_frame = CpuSeconds() / std::max(1, summary.frames);
   summary.peak_memory_bytes = PeakMemoryBytes();
   return summary;
 }

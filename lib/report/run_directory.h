@@ -82,11 +82,14 @@ class RunDirectory {
   /// The streams with their paths.
   std::vector<std::pair<std::string, std::ofstream*>> Streams();
   void WriteHeads();
+  /// Of all threads, with what the run had used before it was resumed.
+  double CpuSeconds() const;
 
   RunPaths paths_;
   RunFacts facts_;
   SummaryBuilder builder_;
   double seconds_writing_ = 0;
+  double cpu_seconds_before_ = 0;
   std::ofstream frames_;
   std::ofstream iterations_;
   std::ofstream trajectory_;

@@ -102,6 +102,7 @@ Json ToJson(const RunSummary& summary) {
           {"refound_frames", summary.refound_frames},
           {"seconds_per_frame", SecondsPerFrame(summary)},
           {"seconds_writing", summary.seconds_writing},
+          {"cpu_seconds_per_frame", summary.cpu_seconds_per_frame},
           {"peak_memory_bytes", summary.peak_memory_bytes},
           {"surfaces", surfaces},
           {"versions", Json(summary.versions)}};

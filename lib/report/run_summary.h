@@ -47,7 +47,7 @@ struct RunSummary {
   std::string error;                ///< Of a failed run, one line.
   std::vector<int> resumed_at;      ///< Frames from which the run went on.
   std::vector<int> skipped_frames;  ///< Left out: images not usable.
-  std::string preset;    ///< Name of the preset.
+  std::string preset;               ///< Name of the preset.
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.
   int lost_frames = 0;        ///< Frames in which any surface was lost.
@@ -58,6 +58,7 @@ struct RunSummary {
   /// Mean seconds per frame of each part, in the order of kFrameParts.
   std::array<double, kFrameParts.size()> part_seconds{};
   double seconds_writing = 0;            ///< Of the whole run.
+  double cpu_seconds_per_frame = 0;      ///< Of all threads, mean.
   std::int64_t peak_memory_bytes = 0;    ///< Largest resident size.
   std::vector<SurfaceSummary> surfaces;  ///< By id.
 };
