@@ -2,7 +2,6 @@
 
 #include <gflags/gflags.h>
 
-#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +13,7 @@
 #include "splitfusion/lib/base/content_cache.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/number_text.h"
 #include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/lib/experiment/settings.h"
@@ -58,31 +58,23 @@ const std::set<std::string>& Uncounted() {
                                               "threads",
                                               "intrinsics",
                                               "depth_scale",
-                                              "skip_bad_frames"};
+                                              "skip_bad_frames",
+                                              "from"};
   return names;
 }
 
 /// Flags of what is written about a result.
 const std::set<std::string>& Outputs() {
-  static const std::set<std::string> names = {"full_report", "pictures_every",
-                                              "warped_every", "warped_whole",
-                                              "write_masks"};
+  static const std::set<std::string> names = {
+      "full_report",  "keep_checkpoints", "pictures_every",
+      "warped_every", "warped_whole",     "write_masks"};
   return names;
 }
 
 /// A number as short as it reads back exactly; other values as they are.
 std::string ValueText(const gflags::CommandLineFlagInfo& flag) {
   if (flag.type != "double") return flag.current_value;
-  char text[32];
-  const auto end =
-      std::to_chars(text, text + sizeof(text), std::stod(flag.current_value));
-  return {text, end.ptr};
-}
-
-std::string NumberText(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof(text), value);
-  return {text, end.ptr};
+  return NumberText(std::stod(flag.current_value));
 }
 
 void AddFlags(RunIdentity* identity) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/number_text.h"
 
 namespace splitfusion {
 namespace {
@@ -47,13 +47,6 @@ void SetKey(const std::string& key, const std::string& value,
     throw InputError("--terms: key '" + key + "' of term '" + options->name +
                      "': expected weight, loss or scale");
   }
-}
-
-/// The shortest text that is read back as the same number.
-std::string NumberText(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof(text), value);
-  return {text, end.ptr};
 }
 
 std::string Trimmed(const std::string& text) {

@@ -1,8 +1,8 @@
 #include "splitfusion/lib/report/csv_row.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
+
+#include "splitfusion/lib/base/number_text.h"
 
 namespace splitfusion {
 
@@ -10,10 +10,7 @@ CsvRow& CsvRow::Add(int value) { return Append(std::to_string(value)); }
 
 CsvRow& CsvRow::Add(double value) {
   if (!std::isfinite(value)) return Append("");
-  std::array<char, 32> buffer;
-  const auto result =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return Append(std::string(buffer.data(), result.ptr));
+  return Append(NumberText(value));
 }
 
 CsvRow& CsvRow::Add(const std::string& value) {

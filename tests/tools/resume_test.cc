@@ -231,6 +231,12 @@ TEST_F(Resume, SetChangesOneNumberAndIsResolved) {
   const Json identity = Json::parse(printed.output);
   EXPECT_EQ(identity["identity_parts"]["terms.arap.weight"], "4");
   EXPECT_EQ(identity["identity_parts"]["object_voxel"], "0.006");
+  // Where something is, and what is kept, do not decide the result.
+  for (const char* flag : {"output", "sequence", "threads", "from",
+                           "keep_checkpoints", "warped_every"}) {
+    EXPECT_FALSE(identity["identity_parts"].contains(flag)) << flag;
+  }
+  EXPECT_TRUE(identity["outputs"].contains("keep_checkpoints"));
   EXPECT_FALSE(folder_.Has("none"));
   for (const auto& [set, part] :
        std::vector<std::pair<std::string, std::string>>{
