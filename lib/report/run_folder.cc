@@ -94,6 +94,18 @@ void RemoveEmptyFolders(const std::string& folder) {
   }
 }
 
+/// Removes the folder of an unfinished run, its marker last: whoever is killed
+/// meanwhile leaves a folder that is still known for one.
+void RemoveRun(const RunPaths& paths) {
+  const fs::path marker(paths.Marker());
+  for (const auto& entry : fs::directory_iterator(paths.root())) {
+    if (entry.path().filename() != marker.filename()) {
+      fs::remove_all(entry.path());
+    }
+  }
+  fs::remove_all(paths.root());
+}
+
 }  // namespace
 
 RunFolder::RunFolder(std::string root, RunIdentity identity,
@@ -179,7 +191,7 @@ void RunFolder::RemoveUnfinished() {
                      ": is not of a run (it has no run.json): expected a "
                      "folder of sf_run");
   }
-  fs::remove_all(unfinished_.root());
+  RemoveRun(unfinished_);
 }
 
 void RunFolder::Begin() {
@@ -256,7 +268,7 @@ void RunFolder::PutInPlace(RunMarker marker) {
   marker.phase = PublishingPhase::kNone;
   WriteRunMarker(root_, marker);
   if (marker.status == RunStatus::kComplete) {
-    fs::remove_all(unfinished_.root());
+    RemoveRun(unfinished_);
     return;
   }
   marker.files.clear();
