@@ -3,16 +3,27 @@
 
 #include <string>
 
+#include "splitfusion/lib/base/stopwatch.h"
+
 namespace splitfusion {
 
-/// Rewrites the one line on stderr on which a program says how far it is:
-/// "DONE/TOTAL WHAT, SECONDS s left", the last only if it is above 0. The line
-/// ends when all is done. Says nothing unless stderr is a terminal.
-void ShowProgress(int done, int total, const std::string& what,
-                  double seconds_left);
+/// Says on stderr how far a program is: "DONE/TOTAL WHAT, SECONDS s left", the
+/// last only if it is above 0. On a terminal it is one line that is rewritten;
+/// elsewhere, as in a log file, a line of the log now and then.
+class ProgressLine {
+ public:
+  ~ProgressLine() { End(); }
 
-/// Ends a line that stopped before all was done, so that a message can follow.
-void EndProgress();
+  /// `done` of `total` are done.
+  void Show(int done, int total, const std::string& what, double seconds_left);
+
+  /// Ends the line, so that a message can follow.
+  void End();
+
+ private:
+  bool begun_ = false;
+  Stopwatch since_line_;
+};
 
 }  // namespace splitfusion
 

@@ -170,9 +170,9 @@ class ProgressLines {
   void Show(const SweepProgress& progress) {
     constexpr double kSecondsBetween = 5;
     if (isatty(STDERR_FILENO)) {
-      ShowProgress(progress.done, progress.total,
-                   "runs, " + progress.last.record.task.name,
-                   progress.seconds_left);
+      line_.Show(progress.done, progress.total,
+                 "runs, " + progress.last.record.task.name,
+                 progress.seconds_left);
       return;
     }
     const bool due = progress.done == progress.total || !said_ ||
@@ -183,7 +183,11 @@ class ProgressLines {
     said_ = true;
   }
 
+  /// Ends the line of a terminal.
+  void End() { line_.End(); }
+
  private:
+  ProgressLine line_;
   Stopwatch since_;
   bool said_ = false;
 };
@@ -247,7 +251,7 @@ int RunExperiment() {
       experiment, options,
       [&](const SweepProgress& progress) { lines.Show(progress); }, WantedStop);
   const bool stopped = Interrupted() && outcome.ended < outcome.planned;
-  if (outcome.ended < outcome.planned) EndProgress();
+  lines.End();
   AddForeignResults(ExperimentFolder(FLAGS_output),
                     ParseForeignResults(FLAGS_foreign));
   Collect(experiment.baseline);

@@ -90,8 +90,9 @@ class Segmentation {
   void Execute() {
     for (int index = frames_.first(); index < frames_.end(); ++index) {
       if (!IsDone(frames_.Stem(index))) Process(frames_.Read(index));
-      PrintProgress(index + 1);
+      ShowProgress(index + 1);
     }
+    progress_.End();
     std::printf(
         "%d frames, %d of them now, %d instances, %.3f s a frame, peak memory "
         "%.0f MB\n",
@@ -140,18 +141,19 @@ class Segmentation {
     return earlier_->Segment(frame);
   }
 
-  void PrintProgress(int end) const {
+  void ShowProgress(int end) {
     const double a_frame =
         segmented_ > 0 ? since_start_.Seconds() / segmented_ : 0.0;
-    ShowProgress(end - frames_.first(), frames_.end() - frames_.first(),
-                 "frames, " + std::to_string(instances_) + " instances",
-                 a_frame * (frames_.end() - end));
+    progress_.Show(end - frames_.first(), frames_.end() - frames_.first(),
+                   "frames, " + std::to_string(instances_) + " instances",
+                   a_frame * (frames_.end() - end));
   }
 
   ColorFrames frames_;
   std::unique_ptr<NetworkSegmenter> network_;
   MaskFolderWriter writer_;
   std::optional<MaskFolderSegmenter> earlier_;
+  ProgressLine progress_;
   Stopwatch since_start_;
   double seconds_ = 0;  // In the network, its input and its outputs.
   int segmented_ = 0;

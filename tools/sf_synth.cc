@@ -68,11 +68,13 @@ int Run() {
   writer_options.mesh_every = FLAGS_mesh_every;
   writer_options.overwrite = FLAGS_overwrite;
   const Stopwatch stopwatch;
+  ProgressLine progress;
   const std::vector<std::string> kept = WriteSyntheticSequence(
       OptionsFromFlags(), writer_options, FLAGS_output, [&](int done) {
-        ShowProgress(done, FLAGS_frames, "frames",
-                     stopwatch.Seconds() / done * (FLAGS_frames - done));
+        progress.Show(done, FLAGS_frames, "frames",
+                      stopwatch.Seconds() / done * (FLAGS_frames - done));
       });
+  progress.End();
   if (!kept.empty()) {
     LOG(WARNING) << FLAGS_output << ": " << kept.size()
                  << " files that sf_synth did not write stay there, such as "

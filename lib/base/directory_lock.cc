@@ -17,6 +17,7 @@
 #include <sstream>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/random_id.h"
@@ -34,16 +35,34 @@ std::string FirstWord(const std::string& path) {
   return word;
 }
 
-/// Field 22 of /proc/PID/stat; 0 if there is no such process.
-long long ProcessStart(long pid) {
+/// What the kernel says of a process.
+struct ProcessState {
+  long long start = 0;  ///< Clock ticks since the boot; 0: no such process.
+  bool ends = false;    ///< It was killed or has returned, but is still there.
+  bool ended = false;   ///< Only an entry is left, for its parent to look at.
+};
+
+/// From /proc/PID/stat, see proc(5).
+ProcessState StateOf(long pid) {
   std::ifstream stream("/proc/" + std::to_string(pid) + "/stat");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   const std::size_t name_end = text.rfind(')');
-  if (name_end == std::string::npos) return 0;
-  std::istringstream fields(text.substr(name_end + 1));
-  std::string field;
-  for (int i = 3; i <= 22; ++i) fields >> field;
-  return std::atoll(field.c_str());
+  if (name_end == std::string::npos) return {};
+  std::istringstream words(text.substr(name_end + 1));
+  const std::vector<std::string> fields{
+      std::istream_iterator<std::string>(words), {}};
+  const auto field = [&](std::size_t number) {  // Counted from 1, as there.
+    constexpr std::size_t kFirst = 3;
+    const std::size_t i = number - kFirst;
+    return i < fields.size() ? fields[i] : std::string("0");
+  };
+  constexpr long long kExiting = 4;  // PF_EXITING of the kernel.
+  ProcessState state;
+  state.start = std::atoll(field(22).c_str());
+  const bool empty = field(3) == "Z" || field(3) == "X";
+  state.ended = empty && std::atoll(field(20).c_str()) <= 1;  // No threads.
+  state.ends = empty || (std::atoll(field(9).c_str()) & kExiting) != 0;
+  return state;
 }
 
 LockHolder ThisProcess() {
@@ -54,7 +73,7 @@ LockHolder ThisProcess() {
   self.host = host;
   self.boot = FirstWord("/proc/sys/kernel/random/boot_id");
   self.pid = getpid();
-  self.process_start = ProcessStart(self.pid);
+  self.process_start = StateOf(self.pid).start;
   return self;
 }
 
@@ -113,8 +132,16 @@ bool IsStale(const std::string& path, const std::string& text,
   if (!holder) return Age(path) > options.silence;  // Half of a lock.
   const LockHolder self = ThisProcess();
   if (holder->host != self.host) return Age(path) > options.silence;
-  return holder->boot != self.boot ||
-         ProcessStart(holder->pid) != holder->process_start;
+  if (holder->boot != self.boot) return true;
+  // Whoever is ending writes nothing more soon; it is waited for.
+  constexpr int kLooks = 500;
+  constexpr std::chrono::milliseconds kBetween(10);
+  ProcessState state = StateOf(holder->pid);
+  for (int i = 0; i < kLooks && state.ends && !state.ended; ++i) {
+    std::this_thread::sleep_for(kBetween);
+    state = StateOf(holder->pid);
+  }
+  return state.ended || state.start != holder->process_start;
 }
 
 /// False if a file of that name is there already.

@@ -53,7 +53,8 @@ std::vector<Experiment> SavedExperiments(const ExperimentFolder& folder) {
 void CheckOwn(const ExperimentFolder& folder) {
   if (fs::is_directory(folder.Experiments())) return;
   for (const char* name : {"results.csv", "results.sqlite", "summary.csv",
-                           "differences.csv", "progress.log", "tasks"}) {
+                           "differences.csv", "progress.log", "tasks",
+                           "associations.txt", "depth.txt"}) {
     if (!fs::exists(folder.Below(name))) continue;
     throw InputError(folder.root() + ": holds a " + name +
                      " of something else: expected the --output of an "

@@ -49,7 +49,8 @@ void Fail(TaskState state, int exit_code, std::vector<std::string> last_lines,
 
 std::string DamageOf(const std::string& run) try {
   ReadFigures(run, /*evaluated=*/false);
-  return "";
+  const RunState state = ReadRunState(run);
+  return state.marker ? FindMissing(*state.marker, run) : state.damage;
 } catch (const InputError& error) {
   return error.what();
 }

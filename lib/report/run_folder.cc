@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,23 @@ bool HoldsOthers(const std::string& folder, const std::vector<fs::path>& own) {
     if (!known) return true;
   }
   return false;
+}
+
+/// Whether it holds anything that a run would take for its own.
+bool HoldsNamesOfRuns(const std::string& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (RunPaths::IsOfRun(entry.path().filename().string())) return true;
+  }
+  return false;
+}
+
+/// What a run wrote, without what somebody else put there.
+std::map<std::string, RunFile> FilesOfRun(const std::string& folder) {
+  std::map<std::string, RunFile> own;
+  for (const auto& [path, file] : ListRunFiles(folder, {kCheckpoint})) {
+    if (RunPaths::IsOfRun(fs::path(path).begin()->string())) own[path] = file;
+  }
+  return own;
 }
 
 /// Files that the next frames write again, or that only an ended run has.
@@ -94,16 +112,24 @@ void RemoveEmptyFolders(const std::string& folder) {
   }
 }
 
-/// Removes the folder of an unfinished run, its marker last: whoever is killed
-/// meanwhile leaves a folder that is still known for one.
+/// Removes what an unfinished run wrote and, if nothing is left, its folder;
+/// its marker last: whoever is killed meanwhile leaves a folder that is still
+/// known for one.
 void RemoveRun(const RunPaths& paths) {
   const fs::path marker(paths.Marker());
+  RemoveTemporaries(paths.root());
+  std::vector<fs::path> own;
   for (const auto& entry : fs::directory_iterator(paths.root())) {
-    if (entry.path().filename() != marker.filename()) {
-      fs::remove_all(entry.path());
+    if (RunPaths::IsOfRun(entry.path().filename().string())) {
+      own.push_back(entry.path());
     }
   }
-  fs::remove_all(paths.root());
+  for (const fs::path& path : own) {
+    if (path.filename() != marker.filename()) fs::remove_all(path);
+  }
+  fs::remove(marker);
+  std::error_code ignored;  // What is somebody else's stays.
+  fs::remove(paths.root(), ignored);
 }
 
 }  // namespace
@@ -152,7 +178,8 @@ void RunFolder::Decide(const RunFolderOptions& options) {
   const bool can_resume = options.resume && begun && begun->IsSame(identity_);
   const bool finished = published &&
                         published->status == RunStatus::kComplete &&
-                        published->IsSame(identity_);
+                        published->IsSame(identity_) &&
+                        FindMissing(*published, root_).empty();
   if (finished && (!options.overwrite || options.keep_same)) {
     marker_ = *published;
     start_ = RunStart::kFinished;
@@ -170,9 +197,12 @@ void RunFolder::DecideBesides(const std::optional<RunMarker>& published,
   const std::optional<RunMarker>& older = published ? published : begun;
   if (older) {
     const std::string changes = Differences(older->identity, identity_);
+    const std::string missing =
+        published ? FindMissing(*published, root_) : std::string();
     const std::string what =
         "a run that is " + ToString(older->status) +
-        (changes.empty() ? "" : ", of other options (" + changes + ")");
+        (changes.empty() ? "" : ", of other options (" + changes + ")") +
+        (missing.empty() ? "" : ", but " + missing);
     const bool again = changes.empty() && !published;
     if (!options.overwrite && !again) {
       throw InputError(root_ + ": holds " + what +
@@ -186,7 +216,7 @@ void RunFolder::DecideBesides(const std::optional<RunMarker>& published,
 void RunFolder::RemoveUnfinished() {
   if (!fs::exists(unfinished_.root())) return;
   if (!ReadRunMarker(unfinished_.root()) &&
-      HoldsOthers(unfinished_.root(), {})) {
+      HoldsNamesOfRuns(unfinished_.root())) {
     throw InputError(unfinished_.root() +
                      ": is not of a run (it has no run.json): expected a "
                      "folder of sf_run");
@@ -248,12 +278,26 @@ bool RunFolder::Publish(RunStatus status, const std::string& error) {
     WriteRunMarker(unfinished_.root(), marker_);
     return false;
   }
-  marker_.files = ListRunFiles(unfinished_.root(), {kCheckpoint});
+  marker_.files = FilesOfRun(unfinished_.root());
   marker_.phase = PublishingPhase::kRemoving;
   WriteRunMarker(unfinished_.root(), marker_);
   PutInPlace(marker_);
   marker_.phase = PublishingPhase::kNone;
   return true;
+}
+
+void RunFolder::RecordFailure(const std::string& error) noexcept {
+  try {
+    CheckHeld();
+    std::optional<RunMarker> begun = ReadRunMarker(unfinished_.root());
+    if (!begun || begun->phase != PublishingPhase::kNone) return;
+    begun->status = RunStatus::kFailed;
+    begun->error = error;
+    WriteRunMarker(unfinished_.root(), *begun);
+  } catch (const std::exception&) {
+    // A full disk takes no marker either: the run stays "running" there, and
+    // whoever comes next sees that nobody holds it.
+  }
 }
 
 void RunFolder::PutInPlace(RunMarker marker) {

@@ -27,7 +27,7 @@ enum class RunStart {
 /// A run directory while a run goes on in it. The run writes into
 /// RUN/unfinished, a run directory of its own, and is put into place when it
 /// has ended: files of an older result are deleted by the list in its marker,
-/// then the new ones are renamed. Whatever else lies in RUN stays. A program
+/// then the new ones are renamed. Whatever else lies in RUN or RUN/unfinished stays. A program
 /// that is killed at any moment leaves a state from which the next one goes on,
 /// and an older result until the new one is whole.
 class RunFolder {
@@ -45,6 +45,8 @@ class RunFolder {
   /// Why an older result is replaced or an unfinished run is not gone on with;
   /// may be empty.
   const std::string& note() const { return note_; }
+  /// The run directory.
+  const std::string& root() const { return root_; }
   /// Where the run writes.
   const RunPaths& unfinished() const { return unfinished_; }
   /// The marker of this run (of the finished one if there is one).
@@ -62,6 +64,9 @@ class RunFolder {
   /// are put where no complete one is, and what is needed to go on stays in
   /// unfinished(). False if an older complete result was kept instead.
   bool Publish(RunStatus status, const std::string& error = "");
+  /// States in the marker that the run failed, where that can be written;
+  /// nothing is put into place. For errors while results are written.
+  void RecordFailure(const std::string& error) noexcept;
 
  private:
   void Lock();

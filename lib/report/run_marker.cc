@@ -173,6 +173,19 @@ void CheckRunFile(const RunMarker& marker, const std::string& folder,
                    " bytes, hash " + found->second.xxh3);
 }
 
+std::string FindMissing(const RunMarker& marker, const std::string& folder) {
+  const RunPaths paths(folder);
+  for (const auto& [path, file] : marker.files) {
+    const fs::path whole = fs::path(folder) / path;
+    if (whole == paths.Evaluation() || whole == paths.HtmlReport()) continue;
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(whole, error);
+    if (error) return path + " is missing";
+    if (bytes != file.bytes) return path + " was changed";
+  }
+  return "";
+}
+
 void AddRunFile(const std::string& folder, const std::string& path) {
   std::optional<RunMarker> marker = ReadRunMarker(folder);
   if (!marker) return;

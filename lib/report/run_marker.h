@@ -75,6 +75,11 @@ std::map<std::string, RunFile> ListRunFiles(
 void CheckRunFile(const RunMarker& marker, const std::string& folder,
                   const std::string& path);
 
+/// Why a run is not whole any more: the first of its files that is missing or
+/// of another size; empty if there is none. Nothing is read. An evaluation,
+/// which can be made again, does not count.
+std::string FindMissing(const RunMarker& marker, const std::string& folder);
+
 /// Adds a file of the folder to its marker, or replaces its entry; nothing if
 /// the folder has no marker.
 void AddRunFile(const std::string& folder, const std::string& path);

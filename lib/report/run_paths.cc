@@ -1,5 +1,7 @@
 #include "splitfusion/lib/report/run_paths.h"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <utility>
@@ -70,6 +72,18 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
     if (!IsPlain(c)) c = '_';
   }
   return name.substr(0, kMaxSurfaceName);
+}
+
+bool RunPaths::IsOfRun(const std::string& name) {
+  const RunPaths here("");
+  const std::array<std::string, 16> names = {
+      here.Marker(),      here.Checkpoint(), "checkpoints",
+      here.Options(),     here.Calibration(), here.Trajectory(),
+      here.Frames(),      here.Iterations(), here.Summary(),
+      here.Evaluation(),  here.HtmlReport(), here.Pictures(),
+      here.Detections(),  "solver",          "masks",
+      "surfaces"};
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 std::string RunPaths::FrameName(int frame) { return Digits(frame, 6); }

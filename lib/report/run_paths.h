@@ -43,6 +43,9 @@ class RunPaths {
   /// RUN/surfaces/NNN_LABEL/warped/FRAME.ply
   std::string WarpedMesh(int id, const std::string& label, int frame) const;
 
+  /// Whether a run writes a file or folder of this name into its directory.
+  static bool IsOfRun(const std::string& name);
+
   /// Folder name of a surface, `NNN_LABEL`.
   static std::string SurfaceName(int id, const std::string& label);
   /// Frame index in six digits.

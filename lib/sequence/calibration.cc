@@ -5,9 +5,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <map>
 #include <sstream>
 
+#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
@@ -110,6 +112,17 @@ Calibration ReadCalibrationLine(const std::string& path) {
   }
   CheckCalibration(path, result);
   return result;
+}
+
+void WriteCalibration(const std::string& path, const Calibration& calibration) {
+  const PinholeCamera& camera = calibration.camera;
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << std::setprecision(17)
+        << "# fx fy cx cy width height depth_factor\n"
+        << camera.fx << ' ' << camera.fy << ' ' << camera.cx << ' ' << camera.cy
+        << ' ' << camera.width << ' ' << camera.height << ' '
+        << calibration.depth_scale << '\n';
+  });
 }
 
 Calibration ReadCalibrationKeys(const std::string& path) {

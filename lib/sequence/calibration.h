@@ -24,6 +24,12 @@ struct Calibration {
 /// more.
 Calibration ReadCalibrationLine(const std::string& path);
 
+/// Writes that line, with a comment that names the values. Reading it gives the
+/// same calibration.
+///
+/// @throw InputError if the file cannot be written.
+void WriteCalibration(const std::string& path, const Calibration& calibration);
+
 /// Reads `camera.txt`: `key value` lines with the keys width, height, fx, fy,
 /// cx, cy, depth_scale; `#` comments.
 ///

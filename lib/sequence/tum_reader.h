@@ -86,6 +86,10 @@ class TumReader : public SequenceReader {
   /// `skip_bad_frames` those before are decoded, to know which of them count.
   void SkipTo(int i);
 
+  /// The sequence, as it was given.
+  const std::string& folder() const { return folder_; }
+  /// How it is read, as it was given.
+  const TumReaderOptions& options() const { return options_; }
   /// Intrinsics and depth scale in use.
   const Calibration& calibration() const { return calibration_; }
 

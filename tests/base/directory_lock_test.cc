@@ -70,6 +70,21 @@ TEST(DirectoryLock, OfAProcessThatIsGoneIsTakenOver) {
   EXPECT_TRUE(DirectoryLock::TryAcquire(folder / "lock"));
 }
 
+TEST(DirectoryLock, OfAZombieIsTakenOver) {
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    auto lock = DirectoryLock::TryAcquire(folder / "lock");
+    _exit(lock ? 0 : 1);  // As if killed: nothing is released.
+  }
+  siginfo_t info = {};
+  ASSERT_EQ(waitid(P_PID, child, &info, WEXITED | WNOWAIT), 0);
+  ASSERT_EQ(info.si_status, 0);
+  EXPECT_FALSE(LivingHolder(folder / "lock"));
+  EXPECT_TRUE(DirectoryLock::TryAcquire(folder / "lock"));
+  EXPECT_EQ(waitpid(child, nullptr, 0), child);
+}
+
 TEST(DirectoryLock, OfAnotherProcessOfTheSameNumberIsTakenOver) {
   const TemporaryFolder folder;
   LeaveLock(folder);

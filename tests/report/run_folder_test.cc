@@ -85,6 +85,22 @@ TEST_F(RunFolderTest, AnotherIdentityIsRefusedAndSaysWhatDiffers) {
   EXPECT_EQ(Open("4", kKeepSame).start(), RunStart::kFresh);
 }
 
+TEST_F(RunFolderTest, AFinishedRunThatLacksAFileIsNotFinished) {
+  Finish("8", "first");
+  fs::remove_all(root() + "/surfaces");
+  ExpectInputError([&] { Open("8"); }, "surfaces/000_first/mesh.ply is missing");
+  {
+    const RunFolder again = Open("8", kKeepSame);
+    EXPECT_EQ(again.start(), RunStart::kFresh);
+    EXPECT_NE(again.note().find("is missing"), std::string::npos);
+  }
+  Finish("8", "first", kOverwrite);
+  folder_.Write("run/evaluation.json", "{}");
+  AddRunFile(root(), "evaluation.json");
+  fs::remove(root() + "/evaluation.json");  // It can be made again.
+  EXPECT_EQ(Open("8").start(), RunStart::kFinished);
+}
+
 TEST_F(RunFolderTest, OtherOutputsAreNotTheSameRun) {
   Finish("8", "first");
   RunIdentity other = Weight("8");
@@ -116,6 +132,40 @@ TEST_F(RunFolderTest, WhatNoRunWroteStays) {
   EXPECT_EQ(folder_.Read("run/notes.txt"), "mine");
   EXPECT_EQ(folder_.Read("run/surfaces/000_first/mine.ply"), "mine");
   EXPECT_FALSE(folder_.Has("run/surfaces/000_first/mesh.ply"));
+}
+
+TEST_F(RunFolderTest, WhatSomebodyPutIntoAnUnfinishedRunStays) {
+  Kill("8", "begun");
+  folder_.Write("run/unfinished/notes.txt", "mine");
+  Finish("4", "first", kOverwrite);
+  EXPECT_EQ(folder_.Read("run/unfinished/notes.txt"), "mine");
+  EXPECT_FALSE(folder_.Has("run/unfinished/trajectory.txt"));
+  EXPECT_FALSE(folder_.Has("run/unfinished/run.json"));
+  EXPECT_EQ(ReadRunMarker(root())->files.count("notes.txt"), 0u);
+  Finish("2", "second", kOverwrite);
+  EXPECT_EQ(Trajectory(), "second");
+  EXPECT_EQ(folder_.Read("run/unfinished/notes.txt"), "mine");
+}
+
+TEST_F(RunFolderTest, AFolderOfOthersNamedAsUnfinishedIsRefused) {
+  folder_.Write("run/unfinished/masks/hand_made.png", "mine");
+  ExpectInputError([&] { Open("8"); }, "unfinished");
+  EXPECT_EQ(folder_.Read("run/unfinished/masks/hand_made.png"), "mine");
+}
+
+TEST_F(RunFolderTest, AFailureWhileResultsAreWrittenIsRecorded) {
+  {
+    RunFolder run = Open("8");
+    WriteBegun("checkpoint.bin", "state");
+    run.RecordFailure("mesh.ply: cannot be written");
+  }
+  const auto begun = ReadRunMarker(root() + "/unfinished");
+  ASSERT_TRUE(begun);
+  EXPECT_EQ(begun->status, RunStatus::kFailed);
+  EXPECT_EQ(begun->error, "mesh.ply: cannot be written");
+  EXPECT_FALSE(folder_.Has("run/run.json"));
+  EXPECT_EQ(Open("8").start(), RunStart::kResumed);
+  EXPECT_EQ(ReadRunMarker(root() + "/unfinished")->error, "");
 }
 
 TEST_F(RunFolderTest, AChangedFileOfTheOlderRunIsKeptBesides) {

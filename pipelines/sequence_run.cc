@@ -1,0 +1,316 @@
+#include "splitfusion/pipelines/sequence_run.h"
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "splitfusion/lib/base/archive.h"
+#include "splitfusion/lib/base/archive_file.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/report/frame_pictures.h"
+
+namespace splitfusion {
+namespace {
+
+/// Of checkpoint.bin: another one with every change of what it holds.
+constexpr std::uint32_t kCheckpointVersion = SplitFusion::kStateVersion;
+
+/// Indices of frames without usable images.
+std::vector<int> SkippedFrames(const TumReader& reader) {
+  std::vector<int> frames;
+  for (const BadFrame& bad : reader.skipped()) frames.push_back(bad.index);
+  return frames;
+}
+
+/// `reader` itself.
+const TumReader& Checked(const TumReader& reader) {
+  if (!reader.options().skip_bad_frames) reader.CheckFrames();
+  return reader;
+}
+
+}  // namespace
+
+Reconstruction::Reconstruction(const std::string& sequence,
+                               const TumReaderOptions& reading,
+                               const PipelineOptions& options,
+                               const LabelTable& labels,
+                               const SegmenterMaker& segmenter)
+    : reader(sequence, reading),
+      fusion(Checked(reader).camera(), options, labels, segmenter(reader)) {}
+
+SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
+                         const Maker& make, RunFolder* folder,
+                         SequenceRunOptions options, SequenceRunHooks hooks)
+    : work_(std::move(work)),
+      folder_(*folder),
+      options_(std::move(options)),
+      hooks_(std::move(hooks)),
+      schedule_(options_.checkpoint_every) {
+  if (folder_.start() == RunStart::kResumed && !Resume()) work_ = make();
+  if (!directory_) {
+    OpenDirectory();
+    if (!options_.from.run.empty()) StartFromOther();
+  }
+  if (!folder_.note().empty()) Warn(folder_.root() + ": " + folder_.note());
+  done_before_ = done_;
+  WriteCalibration(directory_->paths().Calibration(),
+                   work_->reader.calibration());
+  frames_.emplace([this] { return ReadNext(); }, options_.reads_ahead);
+}
+
+void SequenceRun::Execute() {
+  ProcessFrames();
+  try {
+    WriteEnd();
+  } catch (const std::exception& error) {
+    folder_.RecordFailure(error.what());
+    throw;
+  }
+  if (done_ == work_->reader.size()) return;
+  throw std::runtime_error("interrupted after " + std::to_string(done_) +
+                           " of " + std::to_string(work_->reader.size()) +
+                           " frames; what was computed is in " + where_ +
+                           ", and the same command goes on");
+}
+
+void SequenceRun::OpenDirectory() {
+  directory_.emplace(folder_.unfinished().root(), options_.facts,
+                     folder_.start() == RunStart::kResumed);
+}
+
+/// Goes on from the checkpoint; false if that is of no use.
+bool SequenceRun::Resume() {
+  try {
+    OpenDirectory();
+    ReadArchiveFile(folder_.unfinished().Checkpoint(), kCheckpointVersion,
+                    [&](ArchiveReader* archive) { Serialize(archive); });
+  } catch (const InputError& error) {
+    directory_.reset();
+    done_ = 0;
+    coarse_.clear();
+    warned_of_depth_ = false;
+    folder_.StartAfresh(std::string("begins anew: ") + error.what());
+    return false;
+  }
+  work_->reader.SkipTo(done_);
+  folder_.RecordResumption(done_);
+  if (hooks_.tell) {
+    hooks_.tell(folder_.root() + ": goes on after " + std::to_string(done_) + " of " +
+                std::to_string(work_->reader.size()) + " frames");
+  }
+  return true;
+}
+
+void SequenceRun::StartFromOther() {
+  ReadArchiveFile(
+      RunPaths(options_.from.run).KeptCheckpoint(options_.from.at),
+      kCheckpointVersion,
+      [&](ArchiveReader* archive) { SerializeState(archive); });
+  work_->reader.SkipTo(done_);
+}
+
+/// All that later frames and results depend on.
+template <typename Archive>
+void SequenceRun::Serialize(Archive* archive) {
+  (*archive)(done_, coarse_, warned_of_depth_, work_->fusion, *directory_);
+}
+
+/// The state alone, without what this run reported.
+template <typename Archive>
+void SequenceRun::SerializeState(Archive* archive) {
+  ExpectSame(archive, "first_frame", work_->reader.options().first_frame);
+  (*archive)(done_, work_->fusion);
+}
+
+void SequenceRun::SaveCheckpoint() {
+  const Stopwatch writing;
+  if (options_.keep_checkpoints) {
+    WriteArchiveFile(
+        folder_.unfinished().KeptCheckpoint(
+            work_->reader.options().first_frame + done_),
+        kCheckpointVersion,
+        [&](ArchiveWriter* archive) { SerializeState(archive); });
+  }
+  WriteArchiveFile(folder_.unfinished().Checkpoint(), kCheckpointVersion,
+                   [&](ArchiveWriter* archive) { Serialize(archive); });
+  schedule_.Saved(writing.Seconds());
+  directory_->AddWritingSeconds(writing.Seconds());
+  since_checkpoint_.Restart();
+}
+
+/// All frames, or those before an interruption.
+void SequenceRun::ProcessFrames() {
+  try {
+    while (!(hooks_.interrupted && hooks_.interrupted()) && ProcessNext()) {
+    }
+    if (done_ == work_->reader.size()) CheckReconstructed();
+  } catch (const std::exception& error) {
+    // What was computed until then is kept.
+    WriteFailure(error.what());
+    throw;
+  }
+}
+
+bool SequenceRun::ProcessNext() {
+  const Stopwatch frame_time;
+  std::optional<PreparedFrame> prepared = frames_->Next();
+  if (!prepared) return false;
+  const Frame frame = prepared->frame;
+  FrameReport report = work_->fusion.ProcessFrame(std::move(*prepared));
+  // Less than the sum of its parts: reading overlaps with the frame before.
+  report.total_seconds = frame_time.Seconds();
+  folder_.CheckHeld();
+  directory_->AddFrame(report, work_->fusion.trajectory().back());
+  WarnOfMissingDepth(frame);
+  WarnOfLostSurfaces(report);
+  WarnOfCoarseGraphs(report.frame);
+  const Stopwatch writing;
+  WritePictures(frame, report.frame);
+  directory_->AddWritingSeconds(writing.Seconds());
+  ++done_;
+  const bool more = done_ < work_->reader.size();
+  if (schedule_.IsDue(since_checkpoint_.Seconds()) && more) SaveCheckpoint();
+  ShowProgress();
+  return true;
+}
+
+std::optional<PreparedFrame> SequenceRun::ReadNext() {
+  const Stopwatch reading;
+  std::optional<Frame> frame = work_->reader.Next();
+  if (!frame) return std::nullopt;
+  const double seconds = reading.Seconds();
+  PreparedFrame prepared = work_->fusion.Prepare(*frame);
+  prepared.read_seconds += seconds;
+  return prepared;
+}
+
+void SequenceRun::WritePictures(const Frame& frame, int index) const {
+  if (options_.write_masks) {
+    WriteMask(directory_->paths(), frame.stem, work_->fusion.labels());
+  }
+  const int every = options_.pictures_every;
+  if (every == 0 || index % every != 0) return;
+  const SceneRendering scene =
+      RenderScene(work_->fusion.surfaces(), work_->fusion.camera(),
+                  work_->fusion.options().ray_cast);
+  cv::Mat depth;
+  cv::extractChannel(scene.map.points, depth, 2);
+  WriteFramePictures(directory_->paths(), index,
+                     {frame.color, frame.depth, work_->fusion.labels(),
+                      scene.map.color, depth, scene.map.normals});
+}
+
+void SequenceRun::ShowProgress() const {
+  if (!hooks_.shown) return;
+  RunProgress progress;
+  progress.done = done_;
+  progress.total = work_->reader.size();
+  progress.surfaces = static_cast<int>(work_->fusion.surfaces().size());
+  progress.seconds_left = since_start_.Seconds() / (done_ - done_before_) *
+                          (progress.total - done_);
+  hooks_.shown(progress);
+}
+
+/// @throw InputError if there was nothing to reconstruct.
+void SequenceRun::CheckReconstructed() const {
+  if (!work_->fusion.surfaces().empty()) return;
+  throw InputError(work_->reader.folder() +
+                   ": nothing to reconstruct in any of " +
+                   std::to_string(done_) + " frames: " + ExpectedDepth());
+}
+
+void SequenceRun::WriteEnd() {
+  if (done_ == work_->reader.size()) {
+    WriteResults(RunStatus::kComplete);
+  } else {
+    SaveCheckpoint();
+    WriteResults(RunStatus::kIncomplete);
+  }
+}
+
+void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
+  folder_.CheckHeld();
+  const Stopwatch writing;
+  work_->fusion.Finish();
+  for (const auto& [id, surface] : work_->fusion.surfaces()) {
+    WriteSurface(directory_->paths(), *surface, options_.warped);
+    directory_->SetSurfaceSize(
+        id, surface->graph().size(),
+        static_cast<int>(surface->mesh().vertices.size()));
+  }
+  directory_->AddWritingSeconds(writing.Seconds());
+  directory_->Finish({status, error, folder_.marker().resumed_at,
+                      SkippedFrames(work_->reader)});
+  WarnOfSkippedFrames();
+  const bool published = folder_.Publish(status, error);
+  where_ = published ? folder_.root() : folder_.unfinished().root();
+}
+
+/// Of a run that an error ended; a second error, as on a full disk, leaves
+/// what was written before.
+void SequenceRun::WriteFailure(const std::string& error) {
+  try {
+    WriteResults(RunStatus::kFailed, error);
+  } catch (const std::exception& second) {
+    Warn(std::string("results cannot be written: ") + second.what());
+    folder_.RecordFailure(error);
+  }
+}
+
+/// What a run begins with.
+std::string SequenceRun::ExpectedDepth() const {
+  const DepthFilterOptions& filter = work_->reader.options().depth_filter;
+  std::ostringstream text;
+  text << "expected depth from " << filter.min_depth << " to "
+       << filter.max_depth << " m (--min_depth, --max_depth, --depth_scale)";
+  return text.str();
+}
+
+/// Once a run.
+void SequenceRun::WarnOfMissingDepth(const Frame& frame) {
+  if (warned_of_depth_ || !work_->fusion.surfaces().empty()) return;
+  warned_of_depth_ = true;
+  Warn("frame " + std::to_string(frame.index) + ", " + frame.stem +
+       ": no background to begin with: " + ExpectedDepth() +
+       "; passed over until there is");
+}
+
+void SequenceRun::WarnOfLostSurfaces(const FrameReport& report) const {
+  for (const SurfaceReport& surface : report.surfaces) {
+    if (surface.state != "lost") continue;
+    Warn("frame " + std::to_string(report.frame) + ": surface " +
+         std::to_string(surface.id) + " (" + surface.label +
+         ") lost: " + surface.reason);
+  }
+}
+
+/// Once a surface.
+void SequenceRun::WarnOfCoarseGraphs(int frame) {
+  for (const auto& [id, surface] : work_->fusion.surfaces()) {
+    const double planned = surface->planned_node_spacing();
+    const double spacing = surface->graph().node_spacing;
+    if (spacing <= planned || !coarse_.insert(id).second) continue;
+    std::ostringstream text;
+    text << "frame " << frame << ": surface " << id << " (" << surface->label()
+         << ") has nodes every " << 1000 * spacing << " mm instead of "
+         << 1000 * planned
+         << " mm, to keep --max_nodes=" << surface->options().graph.max_nodes;
+    Warn(text.str());
+  }
+}
+
+void SequenceRun::WarnOfSkippedFrames() const {
+  const std::vector<BadFrame> skipped = work_->reader.skipped();
+  if (skipped.empty()) return;
+  Warn(std::to_string(skipped.size()) + " frames are left out, the first: " +
+       skipped.front().reason);
+}
+
+void SequenceRun::Warn(const std::string& line) const {
+  if (hooks_.warn) hooks_.warn(line);
+}
+
+}  // namespace splitfusion

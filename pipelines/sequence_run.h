@@ -1,0 +1,147 @@
+#ifndef SPLITFUSION_PIPELINES_SEQUENCE_RUN_H_
+#define SPLITFUSION_PIPELINES_SEQUENCE_RUN_H_
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "splitfusion/lib/base/read_ahead.h"
+#include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/report/run_directory.h"
+#include "splitfusion/lib/report/run_folder.h"
+#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/pipelines/checkpoint_schedule.h"
+#include "splitfusion/pipelines/split_fusion.h"
+#include "splitfusion/pipelines/surface_output.h"
+
+namespace splitfusion {
+
+/// A state of another run to begin with.
+struct OtherState {
+  std::string run;  ///< Run directory with checkpoints; empty: none.
+  int at = 0;       ///< First frame after that state, index in the sequence.
+};
+
+/// What a run writes besides its report, and how its state is kept.
+struct SequenceRunOptions {
+  WarpedOutput warped;            ///< Warped meshes.
+  int pictures_every = 10;        ///< Of every n-th frame; 0 = none.
+  bool write_masks = true;        ///< Refined masks of every frame.
+  int checkpoint_every = 0;       ///< See CheckpointSchedule.
+  bool keep_checkpoints = false;  ///< All of them, for OtherState.
+  bool reads_ahead = true;        ///< The next frame, in a thread of its own.
+  OtherState from;                ///< Where to begin.
+  RunFacts facts;                 ///< What the run was made with.
+};
+
+/// How far a run is.
+struct RunProgress {
+  int done = 0;             ///< Frames.
+  int total = 0;            ///< Frames.
+  int surfaces = 0;         ///< So far.
+  double seconds_left = 0;  ///< At the pace so far.
+};
+
+/// What a run tells whoever started it; all may be empty.
+struct SequenceRunHooks {
+  std::function<bool()> interrupted;              ///< Whether to stop here.
+  std::function<void(const RunProgress&)> shown;  ///< After every frame.
+  std::function<void(const std::string&)> warn;   ///< A line.
+  std::function<void(const std::string&)> tell;   ///< A line.
+};
+
+/// Frames in and surfaces out: what a run computes with.
+struct Reconstruction {
+  /// What makes the masks of a sequence; null if nothing does.
+  using SegmenterMaker =
+      std::function<std::shared_ptr<Segmenter>(const TumReader&)>;
+
+  /// Looks at all images first, unless bad ones may be skipped.
+  ///
+  /// @throw InputError if the sequence or an option cannot be used.
+  Reconstruction(const std::string& sequence, const TumReaderOptions& reading,
+                 const PipelineOptions& options, const LabelTable& labels,
+                 const SegmenterMaker& segmenter);
+
+  TumReader reader;    ///< At its first frame.
+  SplitFusion fusion;  ///< Before its first frame.
+};
+
+/// One run of the method over a sequence into a run directory, with
+/// checkpoints: what tools/sf_run does once its flags are read.
+class SequenceRun {
+ public:
+  using Maker = std::function<std::unique_ptr<Reconstruction>()>;
+
+  /// Opens the directory, goes on from a checkpoint if `folder` holds one of
+  /// use, or from options.from.
+  ///
+  /// @param work what to compute with.
+  /// @param make makes `work` anew, where a checkpoint turns out to be broken.
+  /// @param folder where to write, not finished; must outlive this.
+  /// @throw InputError if a file cannot be written or read.
+  SequenceRun(std::unique_ptr<Reconstruction> work, const Maker& make,
+              RunFolder* folder, SequenceRunOptions options,
+              SequenceRunHooks hooks = {});
+
+  /// All frames and the results. What was computed is kept, and the run marked
+  /// as failed or incomplete, if it ends before.
+  ///
+  /// @throw InputError if a frame or a result cannot be read or written, or if
+  ///     there was nothing to reconstruct.
+  /// @throw std::runtime_error if it was interrupted.
+  void Execute();
+
+  /// Of the frames so far.
+  RunSummary Summary() const { return directory_->Summary(); }
+
+ private:
+  void OpenDirectory();
+  bool Resume();
+  void StartFromOther();
+  template <typename Archive>
+  void Serialize(Archive* archive);
+  template <typename Archive>
+  void SerializeState(Archive* archive);
+  void SaveCheckpoint();
+
+  void ProcessFrames();
+  bool ProcessNext();
+  std::optional<PreparedFrame> ReadNext();
+  void WritePictures(const Frame& frame, int index) const;
+  void ShowProgress() const;
+
+  void CheckReconstructed() const;
+  void WriteEnd();
+  void WriteResults(RunStatus status, const std::string& error = "");
+  void WriteFailure(const std::string& error);
+
+  std::string ExpectedDepth() const;
+  void WarnOfMissingDepth(const Frame& frame);
+  void WarnOfLostSurfaces(const FrameReport& report) const;
+  void WarnOfCoarseGraphs(int frame);
+  void WarnOfSkippedFrames() const;
+  void Warn(const std::string& line) const;
+
+  std::unique_ptr<Reconstruction> work_;
+  RunFolder& folder_;
+  SequenceRunOptions options_;
+  SequenceRunHooks hooks_;
+  std::optional<RunDirectory> directory_;
+  CheckpointSchedule schedule_;
+  Stopwatch since_start_;
+  Stopwatch since_checkpoint_;
+  std::set<int> coarse_;  // Surfaces whose graph is coarser than planned.
+  bool warned_of_depth_ = false;
+  int done_ = 0;
+  int done_before_ = 0;  // By the run this one goes on with.
+  std::string where_;    // Folder of what was written.
+  // Last: its thread uses the others.
+  std::optional<ReadAhead<PreparedFrame>> frames_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_SEQUENCE_RUN_H_

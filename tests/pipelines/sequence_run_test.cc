@@ -1,0 +1,105 @@
+#include "splitfusion/pipelines/sequence_run.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/synthetic/synthetic_writer.h"
+#include "support/expect_input_error.h"
+#include "support/synthetic_run.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr int kFrames = 4;
+
+/// A sequence on disk and runs over it, without masks.
+class SequenceRunTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    SyntheticOptions scene = SyntheticRun::Quick();
+    scene.frames = kFrames;
+    WriteSyntheticSequence(scene, {}, sequence());
+    options_.pictures_every = 0;
+  }
+
+  std::string sequence() const { return folder_ / "sequence"; }
+  std::string root() const { return folder_ / "run"; }
+  std::string unfinished() const { return root() + "/unfinished"; }
+
+  std::unique_ptr<Reconstruction> Make() const {
+    return std::make_unique<Reconstruction>(
+        sequence(), TumReaderOptions(), PipelineOptions(), LabelTable(),
+        [](const TumReader&) { return nullptr; });
+  }
+
+  RunSummary Execute(const SequenceRunHooks& hooks) {
+    RunFolder folder(root(), {{{"solver", "gn_pcg"}}, {}}, {});
+    SequenceRun run(
+        Make(), [this] { return Make(); }, &folder, options_, hooks);
+    run.Execute();
+    return run.Summary();
+  }
+
+  TemporaryFolder folder_;
+  SequenceRunOptions options_;
+};
+
+TEST_F(SequenceRunTest, TellsHowFarItIsAndLeavesAWholeRun) {
+  std::vector<int> done;
+  SequenceRunHooks hooks;
+  hooks.shown = [&](const RunProgress& progress) {
+    EXPECT_EQ(progress.total, kFrames);
+    EXPECT_GE(progress.seconds_left, 0);
+    done.push_back(progress.done);
+  };
+  EXPECT_EQ(Execute(hooks).frames, kFrames);
+  EXPECT_EQ(done, (std::vector<int>{1, 2, 3, 4}));
+  const auto marker = ReadRunMarker(root());
+  ASSERT_TRUE(marker);
+  EXPECT_EQ(marker->status, RunStatus::kComplete);
+  EXPECT_EQ(marker->files.count("trajectory.txt"), 1u);
+  EXPECT_FALSE(std::filesystem::exists(unfinished()));
+}
+
+TEST_F(SequenceRunTest, AFailureAtWritingTheResultsIsRecordedAndMended) {
+  SequenceRunHooks hooks;
+  options_.checkpoint_every = 1;
+  hooks.shown = [&](const RunProgress& progress) {
+    // A folder where the summary is to be.
+    if (progress.done == kFrames) {
+      folder_.Write("run/unfinished/summary.json/in_the_way", "");
+    }
+  };
+  ExpectInputError([&] { Execute(hooks); }, "summary.json");
+  EXPECT_FALSE(std::filesystem::exists(root() + "/run.json"));
+  const auto begun = ReadRunMarker(unfinished());
+  ASSERT_TRUE(begun);
+  EXPECT_EQ(begun->status, RunStatus::kFailed);
+  EXPECT_NE(begun->error.find("summary.json"), std::string::npos);
+
+  std::filesystem::remove_all(unfinished() + "/summary.json");
+  EXPECT_EQ(Execute({}).frames, kFrames);
+  EXPECT_EQ(ReadRunMarker(root())->resumed_at, std::vector<int>{kFrames - 1});
+}
+
+TEST_F(SequenceRunTest, AnInterruptionIsAskedForBeforeEveryFrame) {
+  SequenceRunHooks hooks;
+  int frames = 0;
+  hooks.interrupted = [&] { return frames == 2; };
+  hooks.shown = [&](const RunProgress& progress) { frames = progress.done; };
+  EXPECT_THROW(Execute(hooks), std::runtime_error);
+  EXPECT_EQ(ReadRunMarker(root())->status, RunStatus::kIncomplete);
+  std::vector<std::string> told;
+  hooks = {};
+  hooks.tell = [&](const std::string& line) { told.push_back(line); };
+  EXPECT_EQ(Execute(hooks).frames, kFrames);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_NE(told[0].find("goes on after 2 of 4 frames"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace splitfusion
