@@ -73,6 +73,7 @@ struct Reconstruction {
 /// checkpoints: what tools/sf_run does once its flags are read.
 class SequenceRun {
  public:
+  /// Makes what a run computes with, before its first frame.
   using Maker = std::function<std::unique_ptr<Reconstruction>()>;
 
   /// Opens the directory, goes on from a checkpoint if `folder` holds one of

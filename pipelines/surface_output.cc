@@ -1,5 +1,8 @@
 #include "splitfusion/pipelines/surface_output.h"
 
+#include <filesystem>
+#include <system_error>
+
 #include "splitfusion/lib/deformation/graph_file.h"
 #include "splitfusion/lib/deformation/known_triangles.h"
 
@@ -31,6 +34,9 @@ TriangleMesh WarpMesh(const Surface& surface, const FrameMotions& motions,
 void WriteSurface(const RunPaths& paths, const Surface& surface,
                   const WarpedOutput& warped) {
   const std::string folder = paths.Surface(surface.id(), surface.label());
+  std::error_code ignored;  // Files that cannot be written say so.
+  std::filesystem::create_directory(
+      std::filesystem::path(folder).parent_path(), ignored);
   WritePly(folder + "/mesh.ply", surface.mesh());
   surface.volume().Write(folder + "/tsdf.vdb");
   WriteGraph(folder + "/graph.json", surface.graph(),

@@ -16,7 +16,7 @@ void WritePathAtomically(const std::string& path,
   const fs::path target(path);
   std::error_code error;
   if (target.has_parent_path()) {
-    fs::create_directories(target.parent_path(), error);
+    fs::create_directory(target.parent_path(), error);
   }
   const fs::path temporary =
       target.parent_path() /

@@ -9,7 +9,8 @@ namespace splitfusion {
 
 /// Writes a file through a temporary name in the same folder and renames it,
 /// so that a reader never sees half of it and a failure leaves the old one.
-/// Missing parent folders are created.
+/// Its folder is made if missing, but not the folders above: a run directory
+/// that was removed while a program wrote into it does not come back.
 ///
 /// @throw InputError if the file cannot be written; names the path.
 void WriteFileAtomically(const std::string& path,

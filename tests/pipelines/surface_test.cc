@@ -156,7 +156,7 @@ TEST(Surface, IsWrittenWithConstantVertexOrder) {
   ApplyRigidMotion(MakeMotion({0, 0, 0}, {0.5, 0, 0}), box.mutable_graph());
   box.RecordMotions(5, true, {});
   box.RecordMotions(6, false, {});
-  WriteSurface(RunPaths(folder / "run"), box, {/*every=*/2, /*whole=*/false});
+  WriteSurface(RunPaths(folder.Make("run")), box, {/*every=*/2, /*whole=*/false});
   const std::string at = "run/surfaces/001_teddy_bear/";
   EXPECT_FALSE(folder.Has(at + "warped/000005.ply"));
   const TriangleMesh rest = ReadPly(folder / (at + "mesh.ply"));
@@ -191,7 +191,7 @@ TEST(Surface, WarpedMeshesHoldWhatWasSeenByThen) {
             box.graph().size());
   const auto warped = [&](bool whole, const std::string& frame) {
     const std::string run = whole ? "whole" : "seen";
-    WriteSurface(RunPaths(folder / run), box, {/*every=*/1, whole});
+    WriteSurface(RunPaths(folder.Make(run)), box, {/*every=*/1, whole});
     return ReadPly(folder /
                    (run + "/surfaces/001_teddy_bear/warped/" + frame + ".ply"));
   };

@@ -99,7 +99,7 @@ TEST(MakeMontage, PlacesTilesInRowsUnderTheirCaptions) {
 
 TEST(WriteFramePictures, WritesWhatTheImagesAllow) {
   const TemporaryFolder folder;
-  const RunPaths paths(folder / "run");
+  const RunPaths paths(folder.Make("run"));
   FrameImages images;
   images.color = cv::Mat(24, 32, CV_8UC3, cv::Scalar(10, 20, 30));
   images.depth = cv::Mat(24, 32, CV_32FC1, cv::Scalar(1.5));
@@ -115,7 +115,7 @@ TEST(WriteFramePictures, WritesWhatTheImagesAllow) {
 
 TEST(WriteMask, KeepsSurfaceIds) {
   const TemporaryFolder folder;
-  const RunPaths paths(folder / "run");
+  const RunPaths paths(folder.Make("run"));
   const cv::Mat labels(2, 3, CV_16UC1, cv::Scalar(300));
   WriteMask(paths, "12.5", labels);
   const cv::Mat read = cv::imread(paths.Mask("12.5"), cv::IMREAD_UNCHANGED);

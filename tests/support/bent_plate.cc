@@ -83,6 +83,7 @@ NodeMotion PlateMotion(const BentPlate& plate, const Eigen::Vector3d& g,
 
 void WriteSurface(const fs::path& folder, const TriangleMesh& mesh,
                   const DeformationGraph& graph, const MotionHistory& history) {
+  fs::create_directories(folder);
   WritePly((folder / "mesh.ply").string(), mesh);
   WriteGraph((folder / "graph.json").string(), graph, 6);
   WriteMotions((folder / "motions.bin").string(), history);

@@ -40,6 +40,12 @@ class TemporaryFolder {
     return *this / name;
   }
 
+  /// Makes a folder; returns its path.
+  std::string Make(const std::string& name) const {
+    std::filesystem::create_directories(path_ / name);
+    return *this / name;
+  }
+
   /// Whole content of a file; empty if it is missing.
   std::string Read(const std::string& name) const {
     std::ifstream stream(path_ / name);
