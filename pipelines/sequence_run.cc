@@ -62,10 +62,11 @@ SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
 }
 
 void SequenceRun::Execute() {
-  ProcessFrames();
   try {
+    ProcessFrames();
     WriteEnd();
   } catch (const std::exception& error) {
+    folder_.CheckHeld();  // If it is gone, that is why no file can be written.
     folder_.RecordFailure(error.what());
     throw;
   }
@@ -256,7 +257,6 @@ void SequenceRun::WriteFailure(const std::string& error) {
     WriteResults(RunStatus::kFailed, error);
   } catch (const std::exception& second) {
     Warn(std::string("results cannot be written: ") + second.what());
-    folder_.RecordFailure(error);
   }
 }
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/geometry/kd_tree.h"
 
 namespace splitfusion {
 namespace {
@@ -82,25 +81,24 @@ void KeepNearest(const DeformationGraph& graph, int node,
   std::sort(candidates->begin(), candidates->end());
 }
 
-/// Nodes within two edges of `node`, at least `wanted` of them if the graph
-/// has so many (small islands of the graph borrow from their surroundings).
-std::vector<int> Candidates(const DeformationGraph& graph, const KdTree& tree,
-                            int node, int wanted) {
+/// Nodes within two edges of `node`, ascending; within more edges where these
+/// are fewer than `wanted`, as at the end of a chain.
+std::vector<int> Candidates(const DeformationGraph& graph, int node,
+                            std::size_t wanted) {
   std::vector<int> found = {node};
-  for (const int j : graph.neighbors[node]) {
-    found.push_back(j);
-    found.insert(found.end(), graph.neighbors[j].begin(),
-                 graph.neighbors[j].end());
+  std::size_t ring = 0;  // Where the nodes of the last ring begin.
+  for (int edges = 1; ring < found.size(); ++edges) {
+    if (edges > 2 && found.size() >= wanted) break;
+    const std::size_t end = found.size();
+    for (; ring < end; ++ring) {
+      for (const int j : graph.neighbors[found[ring]]) {
+        if (std::find(found.begin(), found.end(), j) == found.end()) {
+          found.push_back(j);
+        }
+      }
+    }
   }
   std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  if (static_cast<int>(found.size()) < std::min(wanted, graph.size())) {
-    const std::vector<int> nearest =
-        tree.Nearest(graph.positions[node].cast<float>(), wanted);
-    found.insert(found.end(), nearest.begin(), nearest.end());
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-  }
   if (found.size() > kMaxCandidates) KeepNearest(graph, node, &found);
   return found;
 }
@@ -115,11 +113,10 @@ SkinningIndex::SkinningIndex(const DeformationGraph& graph,
   CheckOption(k_ >= 1 && k_ <= kMaxSkinningNodes, "neighbors_per_point", k_,
               "1.." + std::to_string(kMaxSkinningNodes));
   const std::vector<Eigen::Vector3f> positions = ToFloat(graph.positions);
-  const KdTree islands(positions);
   candidates_.resize(graph.size());
   tbb::parallel_for(0, graph.size(), [&](int i) {
     CandidateList& list = candidates_[i];
-    list.nodes = Candidates(graph, islands, i, k_ + 1);
+    list.nodes = Candidates(graph, i, k_ + 1);
     SortByDistance(positions, i, &list.nodes);
     for (const int node : list.nodes) {
       list.x.push_back(positions[node].x());

@@ -176,37 +176,61 @@ void TieLooseNodes(const std::vector<Eigen::Vector3d>& nodes, int minimum,
   }
 }
 
-/// Ties every connected part of the graph to its nearest other part.
-void TieParts(const std::vector<Eigen::Vector3d>& nodes,
-              std::vector<std::set<int>>* edges) {
-  const int count = static_cast<int>(nodes.size());
-  std::vector<int> part(count, -1);
+/// Connected parts of the graph, by their smallest node.
+std::vector<std::vector<int>> ConnectedParts(
+    const std::vector<std::set<int>>& edges, std::vector<int>* part) {
+  part->assign(edges.size(), -1);
   std::vector<std::vector<int>> parts;
-  for (int i = 0; i < count; ++i) {
-    if (part[i] >= 0) continue;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if ((*part)[i] >= 0) continue;
     const int id = static_cast<int>(parts.size());
-    std::vector<int> members = {i};
-    part[i] = id;
+    std::vector<int> members = {static_cast<int>(i)};
+    (*part)[i] = id;
     for (std::size_t k = 0; k < members.size(); ++k) {
-      for (const int j : (*edges)[members[k]]) {
-        if (part[j] < 0) part[j] = id, members.push_back(j);
+      for (const int j : edges[members[k]]) {
+        if ((*part)[j] < 0) (*part)[j] = id, members.push_back(j);
       }
     }
     parts.push_back(std::move(members));
   }
-  for (const std::vector<int>& members : parts) {
-    if (parts.size() == 1 || members.size() * 2 > nodes.size()) continue;
-    double best = std::numeric_limits<double>::max();
-    int from = -1, to = -1;
-    for (const int i : members) {
-      for (int j = 0; j < count; ++j) {
-        const double distance = (nodes[i] - nodes[j]).squaredNorm();
-        if (part[j] == part[i] || distance >= best) continue;
-        best = distance, from = i, to = j;
-      }
+  return parts;
+}
+
+/// The shortest edge in space from a part to a node of another one.
+std::pair<int, int> ShortestWayOut(const std::vector<Eigen::Vector3d>& nodes,
+                                   const std::vector<int>& members,
+                                   const std::vector<int>& part) {
+  double best = std::numeric_limits<double>::max();
+  std::pair<int, int> edge(members.front(), members.front());
+  for (const int i : members) {
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      const double distance = (nodes[i] - nodes[j]).squaredNorm();
+      if (part[j] == part[i] || distance >= best) continue;
+      best = distance, edge = {i, static_cast<int>(j)};
     }
-    (*edges)[from].insert(to);
-    (*edges)[to].insert(from);
+  }
+  return edge;
+}
+
+/// Ties the connected parts of the graph until there is one, as Boruvka's
+/// algorithm does: in a round every part but the largest gets its shortest edge
+/// to another one. Two small parts that are nearest to each other are then one
+/// part, which the next round ties to a third.
+void TieParts(const std::vector<Eigen::Vector3d>& nodes,
+              std::vector<std::set<int>>* edges) {
+  std::vector<int> part;
+  auto parts = ConnectedParts(*edges, &part);
+  while (parts.size() > 1) {
+    const auto largest = std::max_element(
+        parts.begin(), parts.end(),
+        [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    for (auto it = parts.begin(); it != parts.end(); ++it) {
+      if (it == largest) continue;
+      const auto [from, to] = ShortestWayOut(nodes, *it, part);
+      (*edges)[from].insert(to);
+      (*edges)[to].insert(from);
+    }
+    parts = ConnectedParts(*edges, &part);
   }
 }
 

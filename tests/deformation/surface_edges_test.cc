@@ -117,6 +117,17 @@ TEST(SurfaceEdges, LoosePartsAreTiedByFewEdges) {
   EXPECT_LE(between_plates, 3);
 }
 
+TEST(SurfaceEdges, LoosePartsNearEachOtherAreTiedToTheBodyToo) {
+  // Two stray pieces are nearest to each other and far from the body; two more
+  // pairs of them are farther still.
+  TriangleMesh mesh = PlateMesh(0.3, 0.2, 0.01, 1);
+  for (const double z : {1.5, 1.55, 2.5, 2.55, 4.0, 4.05}) {
+    AppendMesh(PlateMesh(0.12, 0.08, 0.01, z), &mesh);
+  }
+  const DeformationGraph graph = CoverWithNodes(mesh, 0.04);
+  ExpectSound(graph);
+}
+
 TEST(SurfaceEdges, FewNodesAreTiedToAllOthers) {
   const TriangleMesh mesh = PlateMesh(0.1, 0.1, 0.01, 1);
   const std::vector<Eigen::Vector3d> nodes = {

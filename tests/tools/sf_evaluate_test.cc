@@ -99,7 +99,7 @@ TEST_F(SfEvaluate, LeavesOutWhatIsNotKnownOrNot) {
     EXPECT_EQ(plate["frames"], 2);  // 0, in which all is known, and 9.
     const double uncovered = plate["uncovered_fraction"];
     if (unknown) {
-      EXPECT_LT(uncovered, 0.1);
+      EXPECT_LT(uncovered, 0.15);  // Without edges one node carries a point.
     } else {
       EXPECT_NEAR(uncovered, 0.45, 0.1);
     }
