@@ -1,6 +1,10 @@
 # Compiler options of the whole project.
 
-option(SPLITFUSION_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
+set(SPLITFUSION_SANITIZE "" CACHE STRING
+    "Sanitizers of the whole build: address (with undefined) or thread")
+set_property(CACHE SPLITFUSION_SANITIZE PROPERTY STRINGS "" address thread)
+set(SPLITFUSION_SANITIZER_address -fsanitize=address,undefined)
+set(SPLITFUSION_SANITIZER_thread -fsanitize=thread)
 
 # Eigen changes the alignment of its types with the instruction set, and
 # Debian's libceres and PCL were built for the baseline: code that shares Eigen
@@ -25,30 +29,39 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
 
+# Builds a target under a sanitizer: `address` (with undefined) or `thread`.
+function(splitfusion_sanitize target sanitizer)
+  set(flags ${SPLITFUSION_SANITIZER_${sanitizer}})
+  if(NOT flags)
+    message(FATAL_ERROR "SPLITFUSION_SANITIZE = ${sanitizer}: expected address "
+                        "or thread")
+  endif()
+  target_compile_options(${target} PRIVATE ${flags} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(${target} PRIVATE ${flags})
+endfunction()
+
 function(splitfusion_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-comment)
   if(SPLITFUSION_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(SPLITFUSION_SANITIZE)
-    target_compile_options(${target} PUBLIC -fsanitize=address,undefined
-                           -fno-omit-frame-pointer)
-    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+    splitfusion_sanitize(${target} ${SPLITFUSION_SANITIZE})
   endif()
 endfunction()
 
-# Files that include OpenVDB go without the undefined-behaviour sanitizer: it
-# multiplies their compile time (minutes and gigabytes each).
+# Files that include OpenVDB go without the checks of the undefined-behaviour
+# sanitizer that every member call needs: in OpenVDB's templates they multiply
+# the compile time (minutes and gigabytes each). Those of arithmetic and bounds
+# stay. For sources of the calling folder.
 function(splitfusion_spare_openvdb_files)
-  if(NOT SPLITFUSION_SANITIZE)
-    return()
-  endif()
   foreach(source ${ARGN})
     file(STRINGS "${source}" openvdb
          REGEX "include.*(openvdb/|tsdf/internal/(grids|leaf_mesh|padded_leaf))")
     if(openvdb)
-      set_source_files_properties("${source}" PROPERTIES
-        COMPILE_OPTIONS -fno-sanitize=undefined)
+      set_source_files_properties("${source}" PROPERTIES COMPILE_OPTIONS
+        "-fno-sanitize=null,vptr,alignment,object-size,nonnull-attribute,returns-nonnull-attribute")
     endif()
   endforeach()
 endfunction()
