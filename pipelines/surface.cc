@@ -50,14 +50,14 @@ double PlaceTolerance(const TsdfOptions& options) {
   return options.truncation + 4 * options.voxel_size;
 }
 
-/// Places of live points, every fourth pixel, that the graph has to grow over.
-std::vector<Eigen::Vector3d> PlacesBeyondNodes(const CanonicalPlaces& found) {
+/// Places of live points that belong to a surface, every fourth pixel.
+std::vector<Eigen::Vector3d> PlacesOfSurface(const CanonicalPlaces& found) {
   constexpr int kPixelStride = 4;
   std::vector<Eigen::Vector3d> places;
   for (int v = 0; v < found.points.rows; v += kPixelStride) {
     for (int u = 0; u < found.points.cols; u += kPixelStride) {
-      if (found.coverage(v, u) !=
-          static_cast<std::uint8_t>(Coverage::kBeyondNodes)) {
+      const auto coverage = static_cast<Coverage>(found.coverage(v, u));
+      if (coverage == Coverage::kNone || coverage == Coverage::kOutOfReach) {
         continue;
       }
       const cv::Vec3f& p = found.points(v, u);
@@ -115,14 +115,7 @@ void Surface::PlaceGraph(const LiveView& live) {
   }
   index_ = std::make_unique<SkinningIndex>(graph_,
                                            options_.graph.neighbors_per_point);
-  AllocateAroundNodes(0);
   mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
-}
-
-void Surface::AllocateAroundNodes(int first) {
-  if (kind_ == SurfaceKind::kRigid) return;
-  AllocateAround({graph_.positions.begin() + first, graph_.positions.end()},
-                 graph_.node_spacing + options_.tsdf.truncation, &volume_);
 }
 
 void Surface::Fuse(const LiveView& live) {
@@ -140,7 +133,7 @@ void Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
   const CanonicalPlaces found = FindCanonicalPlaces(
       live, id_, graph_, mesh_.vertices, WarpedVertices(),
       {kModelledVoxels * options_.tsdf.voxel_size, options_.growth_reach});
-  AllocateAround(PlacesBeyondNodes(found), options_.tsdf.truncation, &volume_);
+  AllocateAround(PlacesOfSurface(found), options_.tsdf.truncation, &volume_);
   if (options_.looks > 1) {
     // So many of these weigh as much as a mesh asks for.
     cv::Mat_<float> cautious;
@@ -170,7 +163,6 @@ void Surface::UpdateMesh() {
 }
 
 void Surface::GrowOverMesh() {
-  const int before = graph_.size();
   if (GrowGraph(mesh_, options_.graph, *index_, mesh_skinning_.supports(),
                 &graph_, &history_) == 0) {
     return;
@@ -181,7 +173,6 @@ void Surface::GrowOverMesh() {
   index_ = std::move(grown);
   integrator_.FollowGraph(*index_, change, volume_);
   mesh_skinning_.FollowGraph(*index_, mesh_.vertices, change);
-  AllocateAroundNodes(before);
 }
 
 void Surface::RecordMotions(int frame, bool tracked, const RecentViews& views) {

@@ -130,7 +130,6 @@ class Surface {
   void PlaceGraph(const LiveView& live);
   void FuseWarped(const LiveView& live, DepthObservation* observation);
   void GrowOverMesh();
-  void AllocateAroundNodes(int first);
   /// Goes back from the last recorded frame as far as the node is not seen to
   /// be elsewhere.
   int FirstSeen(int node, const RecentViews& views) const;

@@ -86,6 +86,21 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
   }
 }
 
+TEST(Surface, AGraphOfFewNodesNeedsNoMoreBlocks) {
+  std::vector<std::size_t> blocks;
+  for (const int max_nodes : {2000, 1}) {
+    SurfaceOptions options;
+    options.graph.max_nodes = max_nodes;
+    Surface box(1, "box", SurfaceKind::kNonRigid, 4, options);
+    ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+    box.RecordMotions(4, true, {});
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    blocks.push_back(box.volume().leaf_count());
+  }
+  EXPECT_LE(blocks[1], blocks[0]);
+}
+
 TEST(Surface, WhatIsNewIsMeshedOnceSeenSeveralTimes) {
   SurfaceOptions options;
   options.looks = 4;
