@@ -1,7 +1,5 @@
 #include "splitfusion/pipelines/pipeline_options.h"
 
-#include "splitfusion/lib/base/error.h"
-
 namespace splitfusion {
 
 PipelineOptions::PipelineOptions() {
@@ -14,30 +12,50 @@ PipelineOptions::PipelineOptions() {
   object.tsdf.max_free_weight = 0.3;
 }
 
-void PipelineOptions::Check() const {
-  split.Check();
-  background.Check();
-  object.Check();
-  tracker.Check();
-  solver.Check();
-  ray_cast.Check();
-  CheckOption(render_stride >= 1 && render_stride <= 8, "render_stride",
-              render_stride, "1..8 pixels");
-  for (const auto* stages : {&tracker.rigid, &tracker.non_rigid}) {
-    for (const TrackingStage& stage : *stages) {
-      CheckOption(stage.stride % render_stride == 0, "render_stride",
-                  render_stride,
-                  "a divisor of the stride of every tracking stage (" +
-                      std::to_string(stage.stride) + ")");
+void PipelineOptions::List(OptionList* list) {
+  list->Text("terms", &terms,
+             "The energy, Eq. 4: NAME(weight=,loss=,scale=) ...").common = true;
+  list->Switch("split_scene", &split_scene,
+               "Split the scene; else one surface holds all of it.");
+  list->Switch("model_objects", &model_objects,
+               "Model what moves; else it is only cut out.");
+  list->Switch("deform_objects", &deform_objects,
+               "What moves deforms; else it is rigid.");
+  list->Switch("deform_background", &deform_background,
+               "The background deforms, too.");
+  list->Number("render_stride", &render_stride, {1, 8}, "pixels",
+               "Model maps hold every n-th pixel.");
+  for (const auto& stages : {tracker.RigidStages(), tracker.NonRigidStages()}) {
+    for (const TrackingStage& stage : stages) {
+      list->Demand(render_stride < 1 || stage.stride % render_stride == 0,
+                   "render_stride",
+                   "a divisor of the stride of every tracking stage (" +
+                       std::to_string(stage.stride) + ")");
     }
   }
-  CheckOption(min_birth_area >= 0 && min_birth_area < 1, "min_birth_area",
-              min_birth_area, "a fraction of the image");
-  CheckOption(max_lost_young >= 1, "max_lost_young", max_lost_young, ">= 1");
-  CheckOption(min_tracked_pixels >= 1, "min_tracked_pixels", min_tracked_pixels,
-              ">= 1");
-  CheckOption(min_exposure >= 0 && min_exposure <= 1, "min_exposure",
-              min_exposure, "0..1");
+  list->Number("min_tracked_pixels", &min_tracked_pixels, Range::AtLeast(1),
+               "pixels", "With fewer live ones a surface is not tracked.");
+  list->Number("min_exposure", &min_exposure, Range::Share(), "",
+               "Surfaces are carried on, not tracked, while less of them is in "
+               "view beside others; 0 = never.").common = true;
+  list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
+               "of the image",
+               "A surface is modelled once it covers so much.");
+  list->Number("max_lost_young", &max_lost_young, Range::AtLeast(1), "frames",
+               "A surface that is lost so often on end, and was not tracked "
+               "more often, begins anew.");
+  list->Part("", &graph);
+  list->Part("background_", &background);
+  list->Part("object_", &object);
+  list->Part("", &tracker);
+  list->Part("", &solver);
+  list->Part("", &split);
+  list->Part("ray_", &ray_cast);
+}
+
+void PipelineOptions::Check() const {
+  CheckOptions(*this);
+  split.Check();
 }
 
 }  // namespace splitfusion

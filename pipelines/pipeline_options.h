@@ -11,7 +11,8 @@
 
 namespace splitfusion {
 
-/// Options of the whole method. Every one is a flag of `sf_run`.
+/// Options of the whole method. List() names every one; each is a flag of
+/// `sf_run` (docs/options.md).
 struct PipelineOptions {
   /// Detections to surfaces.
   SplitOptions split;
@@ -19,8 +20,10 @@ struct PipelineOptions {
   SurfaceOptions background;
   /// Model of every other surface.
   SurfaceOptions object;
+  /// Warp field of every surface that deforms.
+  GraphOptions graph;
   /// Stages, gates and bounds of tracking.
-  TrackerOptions tracker = TrackerOptions::Defaults();
+  TrackerOptions tracker;
   /// Minimiser.
   SolverOptions solver;
   /// Ray casting of the background.
@@ -45,6 +48,8 @@ struct PipelineOptions {
   int max_lost_young = 5;
 
   PipelineOptions();
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
   /// @throw InputError if a value is out of its range.
   void Check() const;
 };

@@ -297,7 +297,7 @@ void SequenceRun::WarnOfCoarseGraphs(int frame) {
     text << "frame " << frame << ": surface " << id << " (" << surface->label()
          << ") has nodes every " << 1000 * spacing << " mm instead of "
          << 1000 * planned
-         << " mm, to keep --max_nodes=" << surface->options().graph.max_nodes;
+         << " mm, to keep --max_nodes=" << surface->graph_options().max_nodes;
     Warn(text.str());
   }
 }

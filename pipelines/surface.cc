@@ -69,25 +69,34 @@ std::vector<Eigen::Vector3d> PlacesOfSurface(const CanonicalPlaces& found) {
 
 }  // namespace
 
-void SurfaceOptions::Check() const {
-  tsdf.Check();
-  graph.Check();
-  CheckOption(
-      min_mesh_weight > 0 && min_mesh_weight <= MeshExtractor::kMaxMinWeight,
-      "min_mesh_weight", min_mesh_weight, "> 0 and at most 8");
-  CheckOption(looks >= 1, "looks", looks, ">= 1");
-  CheckOption(min_piece_area >= 0, "min_piece_area", min_piece_area,
-              "square metres, >= 0");
-  CheckOption(growth_reach > 0, "growth_reach", growth_reach, "metres > 0");
+void SurfaceOptions::List(OptionList* list) {
+  list->Part("", &tsdf);
+  list->Number("looks", &looks, Range::AtLeast(1), "frames",
+               "A new part of a deforming surface is meshed once seen in so "
+               "many; in more where it was found empty before.");
+  list->Number("min_piece", &min_piece_area, Range::AtLeast(0),
+               "square metres",
+               "Smaller pieces of the final mesh are left out.");
+  list->Number("mesh_weight", &min_mesh_weight,
+               {0, MeshExtractor::kMaxMinWeight, true}, "",
+               "Observations that a voxel needs to be meshed (about frames at "
+               "close range).");
+  list->Number("growth_reach", &growth_reach, Range::Above(0), "metres",
+               "A deforming surface grows over live points that are no farther "
+               "from a node.");
 }
 
+void SurfaceOptions::Check() const { CheckOptions(*this); }
+
 Surface::Surface(int id, std::string label, SurfaceKind kind, int first_frame,
-                 const SurfaceOptions& options)
+                 const SurfaceOptions& options,
+                 const GraphOptions& graph_options)
     : id_(id),
       label_(std::move(label)),
       kind_(kind),
       first_frame_(first_frame),
       options_(options),
+      graph_options_(graph_options),
       volume_(options.tsdf) {}
 
 bool Surface::Initialize(const LiveView& live) {
@@ -109,12 +118,12 @@ void Surface::PlaceGraph(const LiveView& live) {
   if (kind_ == SurfaceKind::kRigid) {
     graph_ = MakeRigidGraph(Rigid3d::Identity());
   } else {
-    planned_node_spacing_ = NodeSpacing(options_.graph, MedianDepth(live, id_));
+    planned_node_spacing_ = NodeSpacing(graph_options_, MedianDepth(live, id_));
     graph_.node_spacing = planned_node_spacing_;
-    GrowGraph(mesh_, options_.graph, &graph_, nullptr);
+    GrowGraph(mesh_, graph_options_, &graph_, nullptr);
   }
   index_ = std::make_unique<SkinningIndex>(graph_,
-                                           options_.graph.neighbors_per_point);
+                                           graph_options_.neighbors_per_point);
   mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
 }
 
@@ -163,12 +172,12 @@ void Surface::UpdateMesh() {
 }
 
 void Surface::GrowOverMesh() {
-  if (GrowGraph(mesh_, options_.graph, *index_, mesh_skinning_.supports(),
+  if (GrowGraph(mesh_, graph_options_, *index_, mesh_skinning_.supports(),
                 &graph_, &history_) == 0) {
     return;
   }
   auto grown = std::make_unique<SkinningIndex>(
-      graph_, options_.graph.neighbors_per_point);
+      graph_, graph_options_.neighbors_per_point);
   const SkinningChange change(*index_, *grown, graph_);
   index_ = std::move(grown);
   integrator_.FollowGraph(*index_, change, volume_);

@@ -7,6 +7,7 @@
 
 #include "splitfusion/lib/association/live_view.h"
 #include "splitfusion/lib/association/recent_views.h"
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
 #include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/motion_history.h"
@@ -23,8 +24,6 @@ namespace splitfusion {
 struct SurfaceOptions {
   /// Voxels and truncation.
   TsdfOptions tsdf;
-  /// Nodes and edges.
-  GraphOptions graph;
   /// Observations a voxel needs before it is meshed (weights, about frames at
   /// close range); at most MeshExtractor::kMaxMinWeight.
   double min_mesh_weight = 0.05;
@@ -40,7 +39,9 @@ struct SurfaceOptions {
   /// from a node, metres: as far as a newly seen limb reaches in one frame.
   double growth_reach = 0.35;
 
-  /// @throw InputError if a value is out of its range.
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
   void Check() const;
 };
 
@@ -53,7 +54,7 @@ class Surface {
   /// `id` 0 is the background. The canonical frame is the camera frame of the
   /// first fused frame.
   Surface(int id, std::string label, SurfaceKind kind, int first_frame,
-          const SurfaceOptions& options);
+          const SurfaceOptions& options, const GraphOptions& graph_options = {});
 
   /// First observation: fills the volume in the camera frame and places the
   /// graph. Returns whether there is a surface to speak of.
@@ -99,6 +100,8 @@ class Surface {
 
   /// Options in use.
   const SurfaceOptions& options() const { return options_; }
+  /// As given.
+  const GraphOptions& graph_options() const { return graph_options_; }
   /// Deformation graph at the current motions.
   const DeformationGraph& graph() const { return graph_; }
   /// Node spacing that the options ask for, metres; 0 for a rigid surface. The
@@ -148,6 +151,7 @@ class Surface {
   int first_frame_;
   bool dormant_ = false;
   SurfaceOptions options_;
+  GraphOptions graph_options_;
   TsdfVolume volume_;
   WarpedIntegrator integrator_;
   DeformationGraph graph_;

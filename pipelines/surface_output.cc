@@ -40,7 +40,7 @@ void WriteSurface(const RunPaths& paths, const Surface& surface,
   WritePly(folder + "/mesh.ply", surface.mesh());
   surface.volume().Write(folder + "/tsdf.vdb");
   WriteGraph(folder + "/graph.json", surface.graph(),
-             surface.options().graph.neighbors_per_point);
+             surface.graph_options().neighbors_per_point);
   WriteMotions(folder + "/motions.bin", surface.history());
   if (surface.is_ray_cast() || warped.every <= 0) return;
   for (const FrameMotions& motions : surface.history().frames) {

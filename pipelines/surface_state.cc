@@ -19,7 +19,7 @@ void Surface::Serialize(Archive* archive) {
 
 void Surface::RestoreCaches() {
   index_ = std::make_unique<SkinningIndex>(graph_,
-                                           options_.graph.neighbors_per_point);
+                                           graph_options_.neighbors_per_point);
   mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
   // These two fill themselves when they are used next.
   integrator_ = WarpedIntegrator();

@@ -81,51 +81,74 @@ int TotalRounds(const std::vector<TrackingStage>& stages) {
 }
 
 double Degrees(double radians) { return radians * 180 / M_PI; }
+double Radians(double degrees) { return degrees * M_PI / 180; }
 
 }  // namespace
 
-TrackerOptions TrackerOptions::Defaults() {
-  TrackerOptions options;
-  const double wide = 30 * M_PI / 180;
-  const double tight = 20 * M_PI / 180;
-  options.rigid = {{8, 5, {0.10, wide, 1.31, true}},
-                   {4, 4, {0.07, 0.5 * (wide + tight), 1.31, false}},
-                   {2, 4, {0.05, tight, 1.31, false}}};
-  const double loose = 45 * M_PI / 180;
-  options.non_rigid = {{4, 3, {0.10, loose, 1.31, true}},
-                       {4, 5, {0.05, loose, 1.31, false}}};
-  return options;
+std::vector<TrackingStage> TrackerOptions::RigidStages() const {
+  const auto gates = [&](double distance, double angle, bool coarse) {
+    return AssociationGates{distance * rigid_distance,
+                            Radians(angle * rigid_angle),
+                            Radians(grazing_angle), coarse};
+  };
+  return {{8, 5, gates(1, 1, true)},
+          {4, 4, gates(0.7, 5.0 / 6, false)},
+          {2, 4, gates(0.5, 2.0 / 3, false)}};
 }
 
-void TrackerOptions::Check() const {
-  for (const auto* stages : {&rigid, &non_rigid}) {
-    for (const TrackingStage& stage : *stages) {
-      CheckOption(stage.stride >= 1 && stage.stride <= 32, "stride",
-                  stage.stride, "1..32 pixels");
-      CheckOption(stage.rounds >= 0, "rounds", stage.rounds, ">= 0");
-      stage.gates.Check();
-    }
-  }
-  CheckOption(!rigid.empty(), "rigid stages", rigid.size(), "at least one");
-  CheckOption(!non_rigid.empty(), "non_rigid stages", non_rigid.size(),
-              "at least one");
-  CheckOption(prior_anneal >= 1, "prior_anneal", prior_anneal, ">= 1");
-  CheckOption(settled >= 0, "settled", settled, ">= 0");
-  CheckOption(min_correspondences >= 6, "min_correspondences",
-              min_correspondences, ">= 6");
-  CheckOption(min_samples >= 0, "min_samples", min_samples, ">= 0");
-  CheckOption(min_accepted >= 0 && min_accepted <= 1, "min_accepted",
-              min_accepted, "0..1");
-  CheckOption(min_fit >= 0 && min_fit <= 1, "min_fit", min_fit, "0..1");
-  CheckOption(max_translation > 0, "max_translation", max_translation,
-              "metres > 0");
-  CheckOption(velocity_gain > 0, "velocity_gain", velocity_gain, "> 0");
-  CheckOption(max_rotation > 0, "max_rotation", max_rotation, "radians > 0");
+std::vector<TrackingStage> TrackerOptions::NonRigidStages() const {
+  const auto gates = [&](double distance, bool coarse) {
+    return AssociationGates{distance * non_rigid_distance,
+                            Radians(non_rigid_angle), Radians(grazing_angle),
+                            coarse};
+  };
+  return {{4, 3, gates(1, true)}, {4, 5, gates(0.5, false)}};
 }
+
+void TrackerOptions::List(OptionList* list) {
+  list->Number("rigid_distance", &rigid_distance, Range::Above(0), "metres",
+               "First gate of the rigid stages; the last has half of it.")
+      .common = true;
+  list->Number("rigid_angle", &rigid_angle, {0, 180, true}, "degrees",
+               "First gate of normals in the rigid stages; the last has two "
+               "thirds of it.").common = true;
+  list->Number("non_rigid_distance", &non_rigid_distance, Range::Above(0),
+               "metres",
+               "First gate of the non-rigid stages; the last has half of it.")
+      .common = true;
+  list->Number("non_rigid_angle", &non_rigid_angle, {0, 180, true}, "degrees",
+               "Gate of normals in the non-rigid stages.").common = true;
+  list->Number("grazing_angle", &grazing_angle, {0, 90, true}, "degrees",
+               "Between live normal and view ray; beyond, depth is not used.");
+  list->Number("prior_anneal", &prior_anneal, Range::AtLeast(1), "",
+               "First factor on the priors' weights in the non-rigid rounds.")
+      .common = true;
+  list->Number("settled", &settled, Range::AtLeast(0), "",
+               "A stage ends when the cost changes by less, relative.");
+  list->Number("min_correspondences", &min_correspondences, Range::AtLeast(6),
+               "pairs", "Fewer in the last round: lost.");
+  list->Number("min_accepted", &min_accepted, Range::Share(), "",
+               "Less of the samples on live depth of the surface paired: lost.");
+  list->Number("min_fit", &min_fit, Range::Share(), "",
+               "Less of a deforming surface in view lies on it: lost.");
+  list->Number("max_translation", &max_translation, Range::Above(0), "metres",
+               "Farther from the prediction: lost.");
+  list->Number("max_rotation", &max_rotation, {0, 180, true}, "degrees",
+               "Farther from the prediction: lost.");
+  list->Number("velocity_gain", &velocity_gain, Range::Above(0), "",
+               "Constant velocity is believed if its misfit is below this "
+               "fraction of that of standing still.");
+  list->Number("min_samples", &min_samples, Range::AtLeast(0), "",
+               "A surface with fewer samples is tracked at half the stride.");
+}
+
+void TrackerOptions::Check() const { CheckOptions(*this); }
 
 SurfaceTracker::SurfaceTracker(TrackerOptions options, SolverOptions solver,
                                Energy energy)
     : options_(std::move(options)),
+      rigid_stages_(options_.RigidStages()),
+      non_rigid_stages_(options_.NonRigidStages()),
       solver_(std::move(solver)),
       energy_(std::move(energy)) {
   options_.Check();
@@ -155,7 +178,7 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
                               const LiveView& live, std::uint16_t surface,
                               const DeformationGraph& graph) const {
   const TrackingStage stage =
-      FittedStage(options_.rigid.front(), options_.min_samples / 4, samples);
+      FittedStage(rigid_stages_.front(), options_.min_samples / 4, samples);
   const WarpField warp(graph);
   const Association association =
       Associate(samples, warp, live, surface, stage.stride, stage.gates);
@@ -207,9 +230,9 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
   const std::vector<ModelSample> warped = WarpedSamples(samples, *graph);
   DeformationGraph motion = MakeRigidGraph(Rigid3d::Identity());
   const std::vector<NodeMotion> before = MakeRigidGraph(back).motions;
-  for (const TrackingStage& stage : options_.rigid) {
+  for (const TrackingStage& stage : rigid_stages_) {
     // A rigid stage of a non-rigid surface only brings it near.
-    if (!graph->rigid() && stage.stride < options_.non_rigid.front().stride) {
+    if (!graph->rigid() && stage.stride < non_rigid_stages_.front().stride) {
       break;
     }
     const TrackingStage fitted =
@@ -229,9 +252,9 @@ void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
                                    const std::vector<NodeMotion>& before,
                                    DeformationGraph* graph,
                                    SurfaceReport* report) const {
-  const int total = TotalRounds(options_.non_rigid);
+  const int total = TotalRounds(non_rigid_stages_);
   int done = 0;
-  for (const TrackingStage& stage : options_.non_rigid) {
+  for (const TrackingStage& stage : non_rigid_stages_) {
     const TrackingStage fitted =
         FittedStage(stage, options_.min_samples, samples);
     for (int round = 0; round < stage.rounds; ++round, ++done) {

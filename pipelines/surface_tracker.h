@@ -7,6 +7,7 @@
 
 #include "splitfusion/lib/association/live_view.h"
 #include "splitfusion/lib/association/projective_association.h"
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/report/frame_report.h"
 
@@ -22,8 +23,11 @@ struct TrackingStage {
 
 /// How one surface is tracked in one frame.
 struct TrackerOptions {
-  std::vector<TrackingStage> rigid;      ///< All nodes share one motion.
-  std::vector<TrackingStage> non_rigid;  ///< Every node moves.
+  double rigid_distance = 0.10;      ///< First gate of the rigid stages, metres.
+  double rigid_angle = 30;           ///< First one of normals, degrees.
+  double non_rigid_distance = 0.10;  ///< First gate of the non-rigid stages.
+  double non_rigid_angle = 45;       ///< Of normals, degrees.
+  double grazing_angle = 75;  ///< Between live normal and view ray, degrees.
   /// The priors' weight falls from this factor to 1 over the non-rigid rounds.
   double prior_anneal = 8;
   /// A stage ends when the cost changes by less than this fraction.
@@ -40,19 +44,22 @@ struct TrackerOptions {
   double min_fit = 0.45;
   /// ... or if the surface moved farther than predicted by this much.
   double max_translation = 0.35;  ///< Metres.
-  double max_rotation = 0.6;      ///< Radians.
+  double max_rotation = 35;       ///< Degrees.
   /// The constant-velocity prediction is believed if its misfit is below this
   /// fraction of that of standing still.
   double velocity_gain = 0.85;
-
   /// A surface with fewer samples than this at a stage's stride is tracked at
   /// half of it, down to the model map's own.
   int min_samples = 1500;
 
-  /// Stages that hold for room-sized and person-sized scenes.
-  static TrackerOptions Defaults();
+  /// The stages in which all nodes share one motion, coarse to fine.
+  std::vector<TrackingStage> RigidStages() const;
+  /// The stages in which every node moves.
+  std::vector<TrackingStage> NonRigidStages() const;
 
-  /// @throw InputError if a value is out of its range.
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
   void Check() const;
 };
 
@@ -101,6 +108,7 @@ class SurfaceTracker {
                             const SurfaceReport& report) const;
 
   TrackerOptions options_;
+  std::vector<TrackingStage> rigid_stages_, non_rigid_stages_;
   SolverOptions solver_;
   Energy energy_;
 };

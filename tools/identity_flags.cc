@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "method_flags.h"
 #include "run_flags.h"
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/content_cache.h"
@@ -31,7 +32,6 @@ DECLARE_string(labels);
 DECLARE_string(masks);
 DECLARE_string(model);
 DECLARE_string(sequence);
-DECLARE_string(terms);
 
 namespace splitfusion {
 namespace {
@@ -51,7 +51,7 @@ const std::set<std::string>& Uncounted() {
                                               "output",
                                               "resume",
                                               "overwrite",
-                                              "print_identity",
+                                              "print_identity", "print_options",
                                               "sequence",
                                               "set",
                                               "terms",
@@ -91,7 +91,7 @@ void AddFlags(RunIdentity* identity) {
 }
 
 void AddTerms(RunIdentity* identity) {
-  const Energy energy = ParseEnergy(FLAGS_terms, BuiltinTerms());
+  const Energy energy = ParseEnergy(MethodFlags().terms, BuiltinTerms());
   for (const auto& [key, value] : TermOptionValues(energy)) {
     identity->parts["terms." + key] = value;
   }
@@ -172,14 +172,14 @@ void ApplySetFlag() {
   for (const auto& [key, value] : settings.entries()) {
     if (key.rfind("terms.", 0) != 0) SetFlag(key, value);
   }
-  Energy energy = ParseEnergy(FLAGS_terms, BuiltinTerms());
+  Energy energy = ParseEnergy(MethodFlags().terms, BuiltinTerms());
   bool changed = false;
   for (const auto& [key, value] : settings.entries()) {
     if (key.rfind("terms.", 0) != 0) continue;
     SetTermOption(key.substr(6), value, BuiltinTerms(), &energy);
     changed = true;
   }
-  if (changed) FLAGS_terms = EnergyText(energy);
+  if (changed) MethodFlags().terms = EnergyText(energy);
   FLAGS_set.clear();  // The options that repeat the run have it resolved.
 }
 

@@ -68,11 +68,11 @@ void CheckMasksFit(const TumReader& reader, std::size_t frames_with_masks,
                << frames << " frames; in the others nothing is detected";
 }
 
-/// Classes of the names in `groups` that neither the table nor `known` has.
-void WarnOfUnknownClasses(const std::vector<MergeGroup>& groups,
-                          const LabelTable& table, const Classes& known) {
+/// Warns of names in `groups` (--merge_touching) that neither the table nor `known` has.
+void WarnOfUnknownClasses(const std::string& groups, const LabelTable& table,
+                          const Classes& known) {
   Classes named;
-  for (const MergeGroup& group : groups) {
+  for (const MergeGroup& group : ParseMergeGroups(groups)) {
     named.insert(group.body);
     named.insert(group.held.begin(), group.held.end());
   }

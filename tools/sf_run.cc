@@ -14,6 +14,7 @@
 #include "identity_flags.h"
 #include "interruption.h"
 #include "mask_flags.h"
+#include "method_flags.h"
 #include "progress_line.h"
 #include "run_flags.h"
 #include "sequence_flags.h"
@@ -32,15 +33,17 @@ DEFINE_bool(keep_same, false,
             "With --overwrite: but not a finished run of the same identity.");
 DEFINE_bool(resume, true, "Go on with an unfinished run of the same options.");
 DEFINE_int32(checkpoint_every, 0,
-             "Save the state every n-th frame; 0 = by time, -1 = never.");
+             "Frames between states; 0 = by time, -1 = never.");
 DEFINE_bool(
     keep_checkpoints, false,
     "Keep all states in RUN/checkpoints, for --from.");
 DEFINE_string(from, "",
-              "Start from the state of this run with --keep_checkpoints.");
+              "Run of --keep_checkpoints to start from.");
 DEFINE_int32(at, 0, "First frame after that state.");
+DEFINE_bool(print_options, false,
+            "Print all options of the method, no run.");
 DEFINE_bool(print_identity, false,
-            "Print what decides the result, run nothing.");
+            "Print what decides the result, no run.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,
@@ -140,6 +143,10 @@ void CheckOutputFlags() {
 }
 
 int RunSequence() {
+  if (FLAGS_print_options) {
+    std::cout << MethodOptionsMarkdown();
+    return kExitDone;
+  }
   ApplySetFlag();
   const TumReaderOptions reading = ReaderOptionsFromFlags();
   const PipelineOptions options = PipelineOptionsFromFlags();
@@ -173,6 +180,7 @@ int RunSequence() {
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
+  splitfusion::RegisterMethodFlags();
   return splitfusion::ToolMain(
       argc, argv,
       "Tracks and maps the rigid and non-rigid surfaces of an RGB-D sequence.\n"

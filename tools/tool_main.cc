@@ -104,10 +104,11 @@ std::map<std::string, Flags> FlagsByFile() {
 /// Help that fits a screen: of files with many flags, those of model, tracking
 /// and solver, the names only.
 void PrintHelp(const std::string& name, const std::string& usage) {
-  constexpr std::size_t kMany = 24;
+  constexpr std::size_t kMany = 20;
   std::map<std::string, Flags> files = FlagsByFile();
   std::cout << usage << Described(files[name]);
   files.erase(name);
+  const bool has_more = files.erase("method_details") > 0;
   for (const auto& [file, flags] : files) {
     std::cout << file.substr(0, file.find('_'));
     if (flags.size() < kMany) {
@@ -117,7 +118,8 @@ void PrintHelp(const std::string& name, const std::string& usage) {
                 << Listed(flags);
     }
   }
-  std::cout << "Also --flagfile=FILE (one flag a line), --helpfull.\n";
+  std::cout << (has_more ? "More of the method: --helpon=method_details. " : "")
+            << "Also --flagfile=FILE (one flag a line), --helpfull.\n";
 }
 
 /// @throw InputError if something on the command line is not a flag.

@@ -28,14 +28,6 @@ enum class Outcome : std::uint8_t {
 
 /// Distances up to so many sigma of the depth noise pass the gate.
 constexpr float kNoiseFactor = 3.0f;
-
-/// An angle, given in radians, as messages state it.
-std::string DegreesText(double radians) {
-  std::ostringstream text;
-  text << radians * 180 / M_PI << " degrees";
-  return text.str();
-}
-
 Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
 class Associator {
@@ -157,14 +149,6 @@ void Count(Outcome outcome, AssociationCounts* counts) {
 }
 
 }  // namespace
-
-void AssociationGates::Check() const {
-  CheckOption(distance > 0, "gate distance", distance, "metres > 0");
-  CheckOption(normal_angle > 0 && normal_angle <= 3.15, "gate normal_angle",
-              DegreesText(normal_angle), "an angle in (0, 180] degrees");
-  CheckOption(grazing_angle > 0 && grazing_angle <= 1.58, "gate grazing_angle",
-              DegreesText(grazing_angle), "an angle in (0, 90] degrees");
-}
 
 Association Associate(const std::vector<ModelSample>& samples,
                       const WarpField& warp, const LiveView& live,

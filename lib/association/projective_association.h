@@ -16,9 +16,6 @@ struct AssociationGates {
   double normal_angle = 0.52;   ///< Radians between the normals.
   double grazing_angle = 1.31;  ///< Radians between live normal and view ray.
   bool coarse_color = false;    ///< Compare colours at the coarse level.
-
-  /// @throw InputError if a value is out of its range.
-  void Check() const;
 };
 
 /// Result of one association.

@@ -165,24 +165,31 @@ void AddNodes(const TriangleMesh& mesh, const GraphOptions& options,
 
 }  // namespace
 
-void GraphOptions::Check() const {
-  CheckOption(
-      neighbors_per_point >= 1 && neighbors_per_point <= kMaxSkinningNodes,
-      "neighbors_per_point", neighbors_per_point,
-      "1.." + std::to_string(kMaxSkinningNodes));
-  CheckOption(neighbors_per_node >= 1 && neighbors_per_node <= 64,
-              "neighbors_per_node", neighbors_per_node, "1..64");
-  CheckOption(near_spacing >= 0.002, "near_spacing", near_spacing,
-              "metres >= 0.002");
-  CheckOption(far_spacing >= near_spacing, "far_spacing", far_spacing,
-              "metres >= near_spacing");
-  CheckOption(near_depth > 0, "near_depth", near_depth, "metres > 0");
-  CheckOption(far_depth > near_depth, "far_depth", far_depth,
-              "metres > near_depth");
-  CheckOption(max_nodes >= 1, "max_nodes", max_nodes, ">= 1");
-  CheckOption(growth_batch >= 0 && growth_batch <= 1, "growth_batch",
-              growth_batch, "0..1");
+void GraphOptions::List(OptionList* list) {
+  list->Number("neighbors_per_point", &neighbors_per_point,
+               {1, kMaxSkinningNodes}, "nodes",
+               "K, the nodes that carry a point (Eq. 3).").common = true;
+  list->Number("neighbors_per_node", &neighbors_per_node, {1, 64}, "nodes",
+               "Edges of a node.");
+  list->Number("near_spacing", &near_spacing, Range::AtLeast(0.002), "metres",
+               "Node spacing of surfaces up to near_depth.").common = true;
+  list->Number("far_spacing", &far_spacing, Range::AtLeast(0.002), "metres",
+               "Node spacing of surfaces from far_depth on.").common = true;
+  list->Demand(far_spacing >= near_spacing, "far_spacing",
+               "metres >= near_spacing");
+  list->Number("near_depth", &near_depth, Range::Above(0), "metres",
+               "See near_spacing.");
+  list->Number("far_depth", &far_depth, Range::Above(0), "metres",
+               "See far_spacing.");
+  list->Demand(far_depth > near_depth, "far_depth", "metres > near_depth");
+  list->Number("max_nodes", &max_nodes, Range::AtLeast(1), "nodes",
+               "Of a graph; its spacing grows to keep it.").common = true;
+  list->Number("growth_batch", &growth_batch, Range::Share(), "",
+               "New nodes wait until they are so many, as a part of the "
+               "graph's (fewer, larger growths are faster).");
 }
+
+void GraphOptions::Check() const { CheckOptions(*this); }
 
 double NodeSpacing(const GraphOptions& options, double depth) {
   const double t = std::clamp(

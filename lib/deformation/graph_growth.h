@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_DEFORMATION_GRAPH_GROWTH_H_
 #define SPLITFUSION_LIB_DEFORMATION_GRAPH_GROWTH_H_
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/deformation/skinning.h"
@@ -25,7 +26,9 @@ struct GraphOptions {
   /// carry the points.
   double growth_batch = 0.005;
 
-  /// @throw InputError if a value is out of its range.
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
   void Check() const;
 };
 

@@ -150,52 +150,57 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
 
 }  // namespace
 
-void SolverOptions::Check() const {
-  CheckOption(
-      solver == "gn_pcg" || solver == "gn_cholesky" || solver == "ceres",
-      "solver", solver, "gn_pcg, gn_cholesky or ceres");
-  ceres::LinearSolverType solver_type;
-  CheckOption(linear_solver == "auto" ||
-                  (ceres::StringToLinearSolverType(Upper(linear_solver),
-                                                   &solver_type) &&
-                   linear_solver.find("schur") == std::string::npos),
-              "linear_solver", linear_solver,
-              "auto, dense_qr, dense_normal_cholesky, sparse_normal_cholesky "
-              "or cgnr");
-  const auto preconditioner_is = [&](const std::set<std::string>& names) {
-    return names.count(preconditioner) > 0;
-  };
-  const bool for_all = preconditioner_is({"auto", "identity", "jacobi"});
-  CheckOption(for_all || preconditioner_is({"block_ic0", "two_level"}),
-              "preconditioner", preconditioner,
-              "auto, identity, jacobi, block_ic0 or two_level");
-  CheckOption(for_all || solver == "gn_pcg", "preconditioner", preconditioner,
-              "auto, identity or jacobi with solver " + solver);
-  CheckOption(trust_region == "levenberg_marquardt" || trust_region == "dogleg",
-              "trust_region", trust_region, "levenberg_marquardt or dogleg");
-  CheckOption(trust_region != "dogleg" || linear_solver != "cgnr",
-              "trust_region", trust_region,
-              "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
-              "factorisation)");
-  CheckOption(threads >= 1 && threads <= 1024, "solver_threads", threads,
-              "1..1024");
-  CheckOption(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
-  CheckOption(max_linear_solver_iterations >= 1, "max_linear_solver_iterations",
-              max_linear_solver_iterations, ">= 1");
-  CheckOption(eta > 0 && eta < 1, "eta", eta, "between 0 and 1");
-  CheckOption(function_tolerance >= 0, "function_tolerance", function_tolerance,
-              ">= 0");
-  CheckOption(gradient_tolerance >= 0, "gradient_tolerance", gradient_tolerance,
-              ">= 0");
-  CheckOption(parameter_tolerance >= 0, "parameter_tolerance",
-              parameter_tolerance, ">= 0");
-  CheckOption(initial_radius > 0, "initial_radius", initial_radius, "> 0");
+void SolverOptions::List(OptionList* list) {
+  list->Choice("solver", &solver, {"gn_pcg", "gn_cholesky", "ceres"},
+               "Block Gauss-Newton with conjugate gradients (gn_pcg) or a "
+               "factorisation (gn_cholesky), or ceres.").common = true;
+  list->Choice("linear_solver", &linear_solver,
+               {"auto", "dense_qr", "dense_normal_cholesky",
+                "sparse_normal_cholesky", "cgnr"},
+               "Of ceres.").common = true;
+  list->Choice("preconditioner", &preconditioner,
+               {"auto", "two_level", "jacobi", "block_ic0", "identity"},
+               "Of gn_pcg (auto: two_level); of cgnr jacobi (auto) or "
+               "identity.").common = true;
+  list->Demand(solver == "gn_pcg" || (preconditioner != "two_level" &&
+                                      preconditioner != "block_ic0"),
+               "preconditioner",
+               "auto, identity or jacobi with solver " + solver);
+  list->Choice("trust_region", &trust_region,
+               {"levenberg_marquardt", "dogleg"},
+               "How a step is kept short.").common = true;
+  list->Demand(trust_region != "dogleg" || linear_solver != "cgnr",
+               "trust_region",
+               "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
+               "factorisation)");
+  list->Number("solver_threads", &threads, {1, 1024}, "threads",
+               "Of ceres; with more the last digits change from run to run.");
+  list->Number("solver_iterations", &max_iterations, Range::AtLeast(1), "",
+               "Iterations of the solver for each association.").common = true;
+  list->Number("linear_iterations", &max_linear_solver_iterations,
+               Range::AtLeast(1), "",
+               "Conjugate gradient iterations of a step at most (gn_pcg, "
+               "cgnr).");
+  list->Number("eta", &eta, {0, 1, true, true}, "",
+               "Relative accuracy of a step's linear solve (gn_pcg, cgnr).");
+  list->Number("function_tolerance", &function_tolerance, Range::AtLeast(0),
+               "", "Converged when the cost changes by less, relative.");
+  list->Number("gradient_tolerance", &gradient_tolerance, Range::AtLeast(0),
+               "", "Converged when the gradient's largest entry is below.");
+  list->Number("parameter_tolerance", &parameter_tolerance, Range::AtLeast(0),
+               "", "Converged when the step is below (radians, metres).");
+  list->Number("initial_radius", &initial_radius, Range::Above(0), "",
+               "First radius of the trust region; 1 / damping.");
   constexpr double kLeastRadius = 1e-32, kLargestRadius = 1e16;  // Of Ceres.
-  CheckOption(
+  list->Demand(
       solver != "ceres" ||
           (initial_radius >= kLeastRadius && initial_radius <= kLargestRadius),
-      "initial_radius", initial_radius, "1e-32..1e16 with solver ceres");
+      "initial_radius", "1e-32..1e16 with solver ceres");
+  list->Switch("full_report", &full_report,
+               "Write Ceres' FullReport() of every solve.");
 }
+
+void SolverOptions::Check() const { CheckOptions(*this); }
 
 SolverReport Minimize(const SurfaceProblem& problem,
                       const SolverOptions& options, DeformationGraph* graph) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "splitfusion/lib/association/correspondence.h"
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/energy/solver_report.h"
 #include "splitfusion/lib/energy/term_registry.h"
@@ -45,7 +46,9 @@ struct SolverOptions {
   double initial_radius = 1e3;
   bool full_report = false;  ///< Keep Ceres' FullReport() text.
 
-  /// @throw InputError on an unknown name or a value out of range.
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
   void Check() const;
 };
 

@@ -313,11 +313,14 @@ class RowCaster {
 
 }  // namespace
 
-void RayCastOptions::Check() const {
-  CheckOption(min_depth > 0, "ray_min_depth", min_depth, "metres > 0");
-  CheckOption(max_depth > min_depth, "ray_max_depth", max_depth,
-              "metres > ray_min_depth");
-  CheckOption(min_weight >= 0, "ray_min_weight", min_weight, ">= 0");
+void RayCastOptions::List(OptionList* list) {
+  list->Number("min_depth", &min_depth, Range::Above(0), "metres",
+               "The background is rendered from here on.");
+  list->Number("max_depth", &max_depth, Range::Above(0), "metres",
+               "The background is rendered up to here.");
+  list->Demand(max_depth > min_depth, "max_depth", "metres > ray_min_depth");
+  list->Number("min_weight", &min_weight, Range::AtLeast(0), "",
+               "Voxels of the background observed less are not surface.");
 }
 
 ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,

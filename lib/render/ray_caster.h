@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_RENDER_RAY_CASTER_H_
 #define SPLITFUSION_LIB_RENDER_RAY_CASTER_H_
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/render/model_map.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
@@ -13,8 +14,8 @@ struct RayCastOptions {
   double max_depth = 6.0;    ///< Metres along the optical axis.
   double min_weight = 0.01;  ///< Voxels observed less are not surface.
 
-  /// @throw InputError if a value is out of its range.
-  void Check() const;
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
 };
 
 /// Per-pixel ray casting of the zero level of a rigid surface (SplitFusion

@@ -6,13 +6,14 @@ namespace splitfusion {
 namespace {
 
 Trust TrustOf(const InstanceMask& detection, const LabelTable& table,
+              const std::vector<MergeGroup>& groups,
               const SplitOptions& options) {
   const double area =
       double(cv::countNonZero(detection.mask)) / detection.mask.total();
   const bool full = detection.score >= options.min_score &&
                     area <= options.max_area &&
                     (IsTrackable(detection.class_name, table, options) ||
-                     MayBeHeld(options.merge_touching, detection.class_name));
+                     MayBeHeld(groups, detection.class_name));
   return full ? Trust::kFull : Trust::kMatched;
 }
 
@@ -33,19 +34,17 @@ Segment MakeSegment(const Candidate& candidate, const Match& match,
 
 bool IsTrackable(const std::string& class_name, const LabelTable& table,
                  const SplitOptions& options) {
-  return options.rigid_objects == RigidObjects::kSeparate ||
+  return options.rigid_objects == "separate" ||
          table.Kind(class_name) == SurfaceKind::kNonRigid;
 }
 
 std::vector<Candidate> ScreenDetections(
     const std::vector<InstanceMask>& detections, const LabelTable& table,
-    const SplitOptions& options) {
+    const std::vector<MergeGroup>& groups, const SplitOptions& options) {
   std::vector<Candidate> candidates;
   for (const InstanceMask& detection : detections) {
-    const bool allowed = options.classes.empty() ||
-                         options.classes.count(detection.class_name) > 0;
-    if (!allowed) continue;
-    candidates.push_back({detection.mask, TrustOf(detection, table, options),
+    candidates.push_back({detection.mask,
+                          TrustOf(detection, table, groups, options),
                           detection.class_name, detection.score});
   }
   return candidates;

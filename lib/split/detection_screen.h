@@ -8,6 +8,7 @@
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/split/instance_matcher.h"
+#include "splitfusion/lib/split/merge_groups.h"
 #include "splitfusion/lib/split/segment.h"
 #include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/lib/split/split_result.h"
@@ -18,12 +19,11 @@ namespace splitfusion {
 bool IsTrackable(const std::string& class_name, const LabelTable& table,
                  const SplitOptions& options);
 
-/// Drops detections outside of the allow-list, and says of the others how far
-/// they may be trusted (score, class, area). What another may hold
-/// (SplitOptions::merge_touching) is trusted whatever its kind.
+/// Says of detections how far they may be trusted (score, class, area). What
+/// another may hold is trusted whatever its kind.
 std::vector<Candidate> ScreenDetections(
     const std::vector<InstanceMask>& detections, const LabelTable& table,
-    const SplitOptions& options);
+    const std::vector<MergeGroup>& groups, const SplitOptions& options);
 
 /// Detections sorted into surfaces and newcomers.
 struct SortedDetections {

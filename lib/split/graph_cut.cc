@@ -194,20 +194,24 @@ class GridGraph {
 
 }  // namespace
 
-void GraphCutOptions::Check() const {
-  CheckOption(core_erosion >= 1 && core_erosion <= 100, "core_erosion",
-              core_erosion, "1..100 pixels");
-  CheckOption(outer_dilation >= 1 && outer_dilation <= 200, "outer_dilation",
-              outer_dilation, "1..200 pixels");
-  CheckOption(step_factor > 0, "step_factor", step_factor, "a positive number");
-  CheckOption(step_offset >= 0, "step_offset", step_offset, "metres >= 0");
-  CheckOption(concave_scale > 0, "concave_scale", concave_scale,
-              "a positive number");
-  CheckOption(convex_scale > 0, "convex_scale", convex_scale,
-              "a positive number");
-  CheckOption(color_scale > 0, "color_scale", color_scale, "a positive number");
-  CheckOption(color_share >= 0 && color_share <= 1, "color_share", color_share,
-              "0..1");
+void GraphCutOptions::List(OptionList* list) {
+  list->Number("core_erosion", &core_erosion, {1, 100}, "pixels",
+               "A mask eroded by so much is surely foreground.");
+  list->Number("outer_dilation", &outer_dilation, {1, 200}, "pixels",
+               "What is farther from a mask is surely background.");
+  list->Number("step_factor", &step_factor, Range::Above(0), "",
+               "A depth step of so many times the noise lowers an edge to 1/e.");
+  list->Number("step_offset", &step_offset, Range::AtLeast(0), "metres",
+               "Is added to that step.");
+  list->Number("concave_scale", &concave_scale, Range::Above(0), "",
+               "1 - cos of the angle of the normals that lowers an edge to 1/e "
+               "where the surface is concave.");
+  list->Number("convex_scale", &convex_scale, Range::Above(0), "",
+               "The same where it is convex.");
+  list->Number("color_scale", &color_scale, Range::Above(0), "grey values",
+               "Difference of colour with half of the effect.");
+  list->Number("color_share", &color_share, Range::Share(), "",
+               "What colour can take from an edge at most.");
 }
 
 cv::Mat_<uchar> CutForeground(const PointMap& points, const cv::Mat& color,

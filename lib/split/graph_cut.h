@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/geometry/point_map.h"
 
 namespace splitfusion {
@@ -24,8 +25,8 @@ struct GraphCutOptions {
   double color_scale = 40.0;
   double color_share = 0.5;  ///< ... that colour has at most on an edge, 0..1.
 
-  /// @throw InputError if a value is out of its range.
-  void Check() const;
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
 };
 
 /// Evidence at or below it is certain: the pixel is background.

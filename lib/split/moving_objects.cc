@@ -36,7 +36,7 @@ cv::Mat_<uchar> MovingObjects::Watch(const MotionView& view,
                                      const LabelTable& table,
                                      std::vector<Candidate>* candidates) {
   cv::Mat_<uchar> standing_free(view.depth.size(), uchar(0));
-  if (options_.rigid_objects == RigidObjects::kSeparate || !view.pose_fits) {
+  if (options_.rigid_objects == "separate" || !view.pose_fits) {
     return standing_free;
   }
   for (Candidate& candidate : *candidates) {

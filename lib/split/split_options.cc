@@ -1,34 +1,42 @@
 #include "splitfusion/lib/split/split_options.h"
 
-#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/split/merge_groups.h"
 
 namespace splitfusion {
 
-RigidObjects ParseRigidObjects(const std::string& word) {
-  const bool separate = word == "separate";
-  CheckOption(separate || word == "background", "rigid_objects", word,
-              "background or separate");
-  return separate ? RigidObjects::kSeparate : RigidObjects::kBackground;
+void SplitOptions::List(OptionList* list) {
+  list->Number("min_score", &min_score, Range::Share(), "",
+               "A detection below makes no surface.").common = true;
+  list->Choice("rigid_objects", &rigid_objects, {"background", "separate"},
+               "Rigid classes: background (until they move) or separate "
+               "(surfaces of their own).").common = true;
+  list->Text("merge_touching", &merge_touching,
+             "CLASS+CLASS,...: what touches an instance of an entry's first "
+             "class is a part of it, as in person+teddy bear.").common = true;
+  list->Number("max_detection_area", &max_area, {0, 1, true}, "of the image",
+               "A larger detection makes no surface.");
+  list->Number("min_instance_pixels", &min_pixels, Range::AtLeast(1), "pixels",
+               "Smaller instances, with depth, are ignored.");
+  list->Number("min_match_iou", &min_match_iou, {0, 1, true}, "",
+               "Overlap of a detection with a projected surface.");
+  list->Number("max_missed_frames", &max_missed_frames, Range::AtLeast(0),
+               "frames", "A surface is kept alive without a detection.");
+  list->Number("birth_frames", &birth_frames, Range::AtLeast(1), "frames",
+               "Detections among four times as many frames make a surface; "
+               "twice as many where background was mapped.");
+  list->Number("confident_score", &confident_score, Range::Share(), "",
+               "A detection of the first frame makes a surface at once.");
+  list->Number("min_contact", &min_contact, {0, 1, true}, "",
+               "A newcomer is a part of a surface that it touches along this "
+               "share of its border.");
+  list->Part("cut_", &graph_cut);
+  list->Part("evidence_", &prior);
+  list->Part("uncertain_", &uncertain);
 }
 
 void SplitOptions::Check() const {
-  graph_cut.Check();
-  prior.Check();
-  uncertain.Check();
-  CheckOption(min_score >= 0 && min_score <= 1, "min_score", min_score, "0..1");
-  CheckOption(max_area > 0 && max_area <= 1, "max_area", max_area,
-              "a fraction of the image in 0..1");
-  CheckOption(min_pixels >= 1, "min_pixels", min_pixels, "at least 1 pixel");
-  CheckOption(min_match_iou > 0 && min_match_iou <= 1, "min_match_iou",
-              min_match_iou, "0..1, not 0");
-  CheckOption(max_missed_frames >= 0, "max_missed_frames", max_missed_frames,
-              "a number of frames >= 0");
-  CheckOption(birth_frames >= 1, "birth_frames", birth_frames,
-              "at least 1 frame");
-  CheckOption(confident_score >= 0 && confident_score <= 1, "confident_score",
-              confident_score, "0..1");
-  CheckOption(min_contact > 0 && min_contact <= 1, "min_contact", min_contact,
-              "a share in 0..1, not 0");
+  CheckOptions(*this);
+  ParseMergeGroups(merge_touching);
 }
 
 }  // namespace splitfusion

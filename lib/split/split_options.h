@@ -5,23 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/split/graph_cut.h"
 #include "splitfusion/lib/split/merge_groups.h"
 #include "splitfusion/lib/split/surface_prior.h"
 #include "splitfusion/lib/split/uncertain_region.h"
 
 namespace splitfusion {
-
-/// What becomes of detections of rigid classes.
-enum class RigidObjects {
-  kBackground,  ///< They are background, until they are seen to have moved.
-  kSeparate,    ///< They get surfaces of their own.
-};
-
-/// The choice of that name, "background" or "separate".
-///
-/// @throw OptionError on any other word.
-RigidObjects ParseRigidObjects(const std::string& word);
 
 /// How detections become surfaces; defaults hold for TUM-like sequences.
 struct SplitOptions {
@@ -43,11 +33,15 @@ struct SplitOptions {
   /// A newcomer is a part of the surface that it touches along this share of
   /// its border.
   double min_contact = 0.12;
-  RigidObjects rigid_objects = RigidObjects::kBackground;  ///< See there.
-  std::vector<MergeGroup> merge_touching;  ///< One surface while they touch.
-  std::set<std::string> classes;           ///< Allow-list; empty = all.
+  /// Detections of rigid classes are "background" until they are seen to have
+  /// moved, or get surfaces of their own, "separate".
+  std::string rigid_objects = "background";
+  std::string merge_touching;  ///< One surface while they touch, see
+                               ///< ParseMergeGroups().
 
-  /// @throw InputError if a value is out of its range.
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
   void Check() const;
 };
 

@@ -136,21 +136,24 @@ class Evidence {
 
 }  // namespace
 
-void PriorOptions::Check() const {
-  CheckOption(mask_weight > 0 && mask_weight <= 4, "mask_weight", mask_weight,
-              "0..4, not 0");
-  CheckOption(prediction_weight >= 0 && prediction_weight <= 4,
-              "prediction_weight", prediction_weight, "0..4");
-  CheckOption(background_weight >= 0 && background_weight <= 4,
-              "background_weight", background_weight, "0..4");
-  CheckOption(unexplained_weight >= 0 && unexplained_weight <= 4,
-              "unexplained_weight", unexplained_weight, "0..4");
-  CheckOption(missed_weight >= 0 && missed_weight <= 4, "missed_weight",
-              missed_weight, "0..4");
-  CheckOption(surface_gate > 0, "surface_gate", surface_gate,
-              "positive metres");
-  CheckOption(background_gate > 0, "background_gate", background_gate,
-              "positive metres");
+void PriorOptions::List(OptionList* list) {
+  Range weight{0, 4};
+  list->Number("prediction_weight", &prediction_weight, weight, "",
+               "Of live depth that agrees with a projected surface.");
+  list->Number("background_weight", &background_weight, weight, "",
+               "Of live depth that agrees with the background.");
+  list->Number("unexplained_weight", &unexplained_weight, weight, "",
+               "Of live depth in front of the background.");
+  list->Number("missed_weight", &missed_weight, weight, "",
+               "Against pixels outside of a surface that was not detected.");
+  weight.above_low = true;
+  list->Number("mask_weight", &mask_weight, weight, "",
+               "Of the core of a mask, in edges of the cut.");
+  list->Number("surface_gate", &surface_gate, Range::Above(0), "metres",
+               "Depth agrees with a surface within this and three times the "
+               "noise.");
+  list->Number("background_gate", &background_gate, Range::Above(0), "metres",
+               "The same of the background.");
 }
 
 ComparedDepth CompareDepth(const cv::Mat& depth,

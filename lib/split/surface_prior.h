@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/split/graph_cut.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 
@@ -28,8 +29,8 @@ struct PriorOptions {
   double surface_gate = 0.08;     ///< Metres, beside three times the noise.
   double background_gate = 0.03;  ///< Metres, beside three times the noise.
 
-  /// @throw InputError if a value is out of its range.
-  void Check() const;
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
 };
 
 /// The live depth compared with the prediction; all images HxW.

@@ -63,6 +63,7 @@ SurfaceSplitter::SurfaceSplitter(const PinholeCamera& camera, LabelTable table,
     : camera_(camera),
       table_(std::move(table)),
       options_(std::move(options)),
+      groups_(ParseMergeGroups(options_.merge_touching)),
       births_(4 * options_.birth_frames),
       objects_(camera, options_) {
   camera_.Check();
@@ -88,7 +89,7 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
   SettleSurfaces(&work);
   SettleNewcomers(&work);
   MergeCoveredSurfaces(options_.min_contact, &registry_, &work);
-  HoldTouchingParts(options_.merge_touching, &registry_, &work);
+  HoldTouchingParts(groups_, &registry_, &work);
   DrawLabels(&work);
   DrawUncertain(&work);
   Remember(work);
@@ -114,7 +115,7 @@ void SurfaceSplitter::CheckSizes(const Frame& frame,
 void SurfaceSplitter::CollectSegments(
     const std::vector<InstanceMask>& detections, SplitWork* work) {
   std::vector<Candidate> candidates =
-      ScreenDetections(detections, table_, options_);
+      ScreenDetections(detections, table_, groups_, options_);
   const cv::Mat_<uchar> standing_free = WatchObjects(*work, &candidates);
   MatchOptions match_options;
   match_options.min_iou = options_.min_match_iou;
@@ -122,7 +123,7 @@ void SurfaceSplitter::CollectSegments(
       MatchInstances(candidates, work->prior.labels, work->compared.agreement,
                      registry_.Matchable(), match_options);
   RecognizeHidden(candidates, table_, registry_, *work, &matches);
-  TakeOutParts(options_.merge_touching, candidates, registry_, work, &matches);
+  TakeOutParts(groups_, candidates, registry_, work, &matches);
   SortedDetections sorted = SortDetections(candidates, matches, table_,
                                            options_, work->frame.depth.size());
   work->segments = std::move(sorted.segments);
@@ -220,13 +221,12 @@ void SurfaceSplitter::SettleMissed(const Segment& segment, int pixels,
 }
 
 void SurfaceSplitter::SettleNewcomers(SplitWork* work) {
-  const auto& groups = options_.merge_touching;
   // What may be held last: who holds it may be new too.
   for (const bool held : {false, true}) {
     for (std::size_t i = 0; i < work->segments.size(); ++i) {
       const Segment& segment = work->segments[i];
       if (segment.surface == 0 &&
-          MayBeHeld(groups, segment.class_name) == held) {
+          MayBeHeld(groups_, segment.class_name) == held) {
         SettleNewcomer(static_cast<int>(i), work);
       }
     }
@@ -243,7 +243,7 @@ void SurfaceSplitter::SettleNewcomer(int index, SplitWork* work) {
     return;
   }
   const bool held =
-      FindHolder(index, options_.merge_touching, registry_, *work) > 0;
+      FindHolder(index, groups_, registry_, *work) > 0;
   const bool large = CountWithDepth(pixels, work->frame.depth) >=
                      (held ? MinFollowedPixels(options_) : options_.min_pixels);
   const bool open = large && (held || !segment.only_held);

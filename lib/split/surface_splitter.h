@@ -80,6 +80,7 @@ class SurfaceSplitter {
   PinholeCamera camera_;
   LabelTable table_;
   SplitOptions options_;
+  std::vector<MergeGroup> groups_;
   InstanceRegistry registry_;
   BirthQueue births_;
   MovingObjects objects_;

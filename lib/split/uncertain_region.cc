@@ -43,11 +43,13 @@ bool IsUncertain(const UncertainInput& input, const UncertainOptions& options,
 
 }  // namespace
 
-void UncertainOptions::Check() const {
-  CheckOption(band >= 0 && band <= 100, "band", band, "0..100 pixels");
-  CheckOption(edge_band >= 0 && edge_band <= 100, "edge_band", edge_band,
-              "0..100 pixels");
-  CheckOption(reach >= 0 && reach <= 1000, "reach", reach, "0..1000 pixels");
+void UncertainOptions::List(OptionList* list) {
+  list->Number("band", &band, {0, 100}, "pixels",
+               "Background so near to an instance is left alone.");
+  list->Number("edge_band", &edge_band, {0, 100}, "pixels",
+               "The same beside depth edges.");
+  list->Number("reach", &reach, {0, 1000}, "pixels",
+               "The same of what stands in front of the background.");
 }
 
 cv::Mat_<uchar> DrawUncertainRegion(const UncertainInput& input,

@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 
 namespace splitfusion {
@@ -14,8 +15,8 @@ struct UncertainOptions {
   int reach = 30;      ///< Pixels around it in which everything in front of
                        ///< the background counts too.
 
-  /// @throw InputError if a value is out of its range.
-  void Check() const;
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
 };
 
 /// What is known of a frame when the uncertain region is drawn; all HxW.

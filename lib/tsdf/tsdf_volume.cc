@@ -10,6 +10,7 @@
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/number_text.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 #include "splitfusion/lib/tsdf/internal/packed_color.h"
 
@@ -121,16 +122,24 @@ void FreeUnobserved(const internal::LeafBuffers& leaf, float free_space) {
 
 }  // namespace
 
-void TsdfOptions::Check() const {
-  CheckOption(voxel_size > 0 && voxel_size < 1, "voxel_size", voxel_size,
-              "metres between 0 and 1");
-  CheckOption(truncation >= 2 * voxel_size && truncation <= 50 * voxel_size,
-              "truncation", truncation,
-              "2 to 50 voxels (" + std::to_string(2 * voxel_size) + " to " +
-                  std::to_string(50 * voxel_size) + " m)");
-  CheckOption(max_weight >= 1, "max_weight", max_weight, ">= 1");
-  CheckOption(max_free_weight > 0, "max_free_weight", max_free_weight, "> 0");
+void TsdfOptions::List(OptionList* list) {
+  // Finer voxels would need more memory than there is, and end in OpenVDB.
+  list->Number("voxel", &voxel_size, {0.001, 1, false, true}, "metres",
+               "Edge of a voxel.").common = true;
+  list->Number("truncation", &truncation, Range::Above(0), "metres",
+               "Truncation of the distances.").common = true;
+  list->Demand(truncation >= 2 * voxel_size && truncation <= 50 * voxel_size,
+               "truncation",
+               "2 to 50 voxels (" + NumberText(2 * voxel_size) + " to " +
+                   NumberText(50 * voxel_size) + " metres)");
+  list->Number("max_weight", &max_weight, Range::AtLeast(1), "",
+               "Cap of a voxel's weight in the running mean.");
+  list->Number("free_weight", &max_free_weight, Range::Above(0), "",
+               "The same where space was found empty: how long what comes back "
+               "takes to be believed.");
 }
+
+void TsdfOptions::Check() const { CheckOptions(*this); }
 
 void TsdfVolume::Grids::Touch(const openvdb::Coord& origin) {
   const auto [x, y, z] = internal::PlaceOf(origin);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/geometry/camera.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
@@ -26,7 +27,9 @@ struct TsdfOptions {
   /// False: distances alone. Takes two thirds of the memory; meshes are black.
   bool has_color = true;
 
-  /// @throw InputError if a value is out of its range.
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
   void Check() const;
 };
 

@@ -214,22 +214,5 @@ TEST_F(AssociationTest, EveryPointIsCountedOnceAndTheOrderIsKept) {
   EXPECT_LT(at, samples_.size()) << "not in the order of the samples";
 }
 
-TEST(AssociationGates, RefuseValuesOutOfRange) {
-  AssociationGates gates;
-  gates.distance = 0;
-  ExpectInputError([&] { gates.Check(); },
-                   "gate distance = 0: expected metres > 0");
-  gates = AssociationGates();
-  gates.normal_angle = 4;
-  ExpectInputError([&] { gates.Check(); },
-                   "gate normal_angle = 229.183 degrees: expected an angle in "
-                   "(0, 180] degrees");
-  gates = AssociationGates();
-  gates.grazing_angle = 2;
-  ExpectInputError([&] { gates.Check(); },
-                   "gate grazing_angle = 114.592 degrees: expected an angle in "
-                   "(0, 90] degrees");
-}
-
 }  // namespace
 }  // namespace splitfusion

@@ -184,7 +184,7 @@ TEST(GraphOptions, RefuseValuesOutOfRange) {
   refused([](GraphOptions* o) { o->far_depth = o->near_depth; }, "far_depth");
   refused([](GraphOptions* o) { o->near_depth = 0; }, "near_depth = 0");
   refused([](GraphOptions* o) { o->max_nodes = 0; },
-          "max_nodes = 0: expected >= 1");
+          "max_nodes = 0: expected nodes >= 1");
 }
 
 }  // namespace

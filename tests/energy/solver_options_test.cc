@@ -35,8 +35,8 @@ TEST(SolverOptions, UnknownNamesListTheKnownOnes) {
   ExpectRefused([](SolverOptions* o) { o->solver = "lm"; },
                 "solver = lm: expected gn_pcg, gn_cholesky or ceres");
   ExpectRefused([](SolverOptions* o) { o->preconditioner = "schur_jacobi"; },
-                "preconditioner = schur_jacobi: expected auto, identity, "
-                "jacobi, block_ic0 or two_level");
+                "preconditioner = schur_jacobi: expected auto, two_level, "
+                "jacobi, block_ic0 or identity");
   ExpectRefused([](SolverOptions* o) { o->trust_region = "newton"; },
                 "trust_region = newton: expected levenberg_marquardt or "
                 "dogleg");
@@ -73,11 +73,11 @@ TEST(SolverOptions, RefuseValuesOutOfRange) {
   ExpectRefused([](SolverOptions* o) { o->threads = 0; },
                 "solver_threads = 0: expected 1..1024");
   ExpectRefused([](SolverOptions* o) { o->max_iterations = 0; },
-                "max_iterations = 0: expected >= 1");
+                "solver_iterations = 0: expected >= 1");
   ExpectRefused([](SolverOptions* o) { o->max_linear_solver_iterations = -3; },
-                "max_linear_solver_iterations = -3: expected >= 1");
+                "linear_iterations = -3: expected >= 1");
   ExpectRefused([](SolverOptions* o) { o->eta = 1; },
-                "eta = 1: expected between 0 and 1");
+                "eta = 1: expected 0..1, not 0, not 1");
   ExpectRefused([](SolverOptions* o) { o->function_tolerance = -1; },
                 "function_tolerance = -1: expected >= 0");
   ExpectRefused([](SolverOptions* o) { o->gradient_tolerance = -1; },

@@ -196,7 +196,7 @@ TEST(Checkpoint, HiddenLostAndDormantSurfacesGoOn) {
 
 TEST(Checkpoint, WhatIsHeldGoesOn) {
   Story story;
-  story.options.split.merge_touching = ParseMergeGroups("person+handbag");
+  story.options.split.merge_touching = "person+handbag";
   story.script = [](int frame, Frame*, std::vector<InstanceMask>* detections) {
     const std::size_t count = detections->size();
     for (std::size_t i = 0; i < count && frame > 1; ++i) {

@@ -31,19 +31,19 @@ TEST(PipelineOptions, RefuseValuesOutOfRange) {
                 "render_stride = 3: expected a divisor of the stride of every "
                 "tracking stage (8)");
   ExpectRefused([](PipelineOptions* o) { o->min_birth_area = 1; },
-                "min_birth_area = 1: expected a fraction of the image");
+                "min_birth_area = 1: expected 0..1 of the image, not 1");
   ExpectRefused([](PipelineOptions* o) { o->max_lost_young = 0; },
-                "max_lost_young = 0: expected >= 1");
+                "max_lost_young = 0: expected frames >= 1");
   ExpectRefused([](PipelineOptions* o) { o->min_tracked_pixels = 0; },
-                "min_tracked_pixels = 0: expected >= 1");
+                "min_tracked_pixels = 0: expected pixels >= 1");
 }
 
 TEST(PipelineOptions, ThoseOfAllPartsAreChecked) {
   ExpectRefused([](PipelineOptions* o) { o->terms = "no_such_term"; },
                 "term 'no_such_term' is unknown");
   ExpectRefused([](PipelineOptions* o) { o->object.tsdf.voxel_size = 0; },
-                "voxel_size = 0");
-  ExpectRefused([](PipelineOptions* o) { o->background.graph.max_nodes = 0; },
+                "object_voxel = 0");
+  ExpectRefused([](PipelineOptions* o) { o->graph.max_nodes = 0; },
                 "max_nodes = 0");
   ExpectRefused([](PipelineOptions* o) { o->solver.threads = 0; },
                 "solver_threads = 0");

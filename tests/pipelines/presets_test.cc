@@ -65,13 +65,13 @@ TEST(Presets, DynamicFusionIsOneNonRigidSurface) {
 TEST(Presets, SceneThatNeedsManyNodesGetsAWiderSpacingAndSaysSo) {
   PipelineOptions options;
   ApplyPreset("dynamicfusion", &options);
-  options.background.graph.max_nodes = 150;
+  options.graph.max_nodes = 150;
   SyntheticRun run(SyntheticRun::Quick(), options);
   const FrameReport report = run.Next();
   ASSERT_EQ(report.surfaces.size(), 1u);
   EXPECT_LE(report.surfaces[0].nodes, 150);
   EXPECT_GT(report.surfaces[0].node_spacing,
-            2 * options.background.graph.far_spacing);
+            2 * options.graph.far_spacing);
   EXPECT_EQ(report.surfaces[0].node_spacing,
             run.fusion().surfaces().at(0)->graph().node_spacing);
 }

@@ -61,7 +61,7 @@ TEST(Surface, AnObjectIsMeshedAndCoveredWithNodes) {
     EXPECT_NEAR(v.z(), 1.0, 0.01);
   }
   EXPECT_GT(box.graph().size(), 20);
-  EXPECT_EQ(box.graph().node_spacing, NodeSpacing(box.options().graph, 1.0));
+  EXPECT_EQ(box.graph().node_spacing, NodeSpacing(box.graph_options(), 1.0));
   EXPECT_EQ(box.mesh_skinning().size(), box.mesh().vertices.size());
   Surface rigid = MakeBox(SurfaceKind::kRigid);
   ASSERT_TRUE(rigid.Initialize(ViewWithBox(kHalf)));
@@ -89,9 +89,9 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
 TEST(Surface, AGraphOfFewNodesNeedsNoMoreBlocks) {
   std::vector<std::size_t> blocks;
   for (const int max_nodes : {2000, 1}) {
-    SurfaceOptions options;
-    options.graph.max_nodes = max_nodes;
-    Surface box(1, "box", SurfaceKind::kNonRigid, 4, options);
+    GraphOptions graph;
+    graph.max_nodes = max_nodes;
+    Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions(), graph);
     ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
     box.RecordMotions(4, true, {});
     box.Fuse(ViewWithBox(kWhole));
@@ -532,19 +532,16 @@ TEST(ModelRendering, SamplesLieOnTheSurfaceAtTheirPixels) {
 TEST(SurfaceOptions, RefuseValuesOutOfRange) {
   SurfaceOptions options;
   options.min_mesh_weight = -1;
-  ExpectInputError([&] { options.Check(); }, "min_mesh_weight");
+  ExpectInputError([&] { options.Check(); }, "mesh_weight");
   // Beyond, fusion would not tell that a mesh has to be made anew.
   options.min_mesh_weight = 8.5;
   ExpectInputError([&] { options.Check(); },
-                   "min_mesh_weight = 8.5: expected > 0 and at most 8");
+                   "mesh_weight = 8.5: expected 0..8, not 0");
   options.min_mesh_weight = MeshExtractor::kMaxMinWeight;
   options.Check();
   options = SurfaceOptions();
   options.looks = 0.5;
   ExpectInputError([&] { options.Check(); }, "looks = 0.5");
-  options = SurfaceOptions();
-  options.graph.max_nodes = 0;
-  ExpectInputError([&] { options.Check(); }, "max_nodes = 0");
   options = SurfaceOptions();
   options.tsdf.truncation = 0;
   ExpectInputError([&] { options.Check(); }, "truncation = 0");

@@ -18,7 +18,7 @@ namespace {
 struct CornerTracking {
   explicit CornerTracking(
       const Rigid3d& motion,
-      const TrackerOptions& options = TrackerOptions::Defaults()) {
+      const TrackerOptions& options = {}) {
     const LiveView live = View(CornerDepth(motion));
     MakeTracker(options).Track(
         SamplesOf(View(CornerDepth(Rigid3d::Identity()))), live, 0,
@@ -46,7 +46,7 @@ TEST(SurfaceTracker, FindsTheMotionOfTheCamera) {
 }
 
 TEST(SurfaceTracker, ALostFrameKeepsTheMotion) {
-  TrackerOptions options = TrackerOptions::Defaults();
+  TrackerOptions options;
   options.max_translation = 0.01;
   const Rigid3d motion = MakeMotion({0, 0, 0}, {0.03, 0, 0.02});
   const CornerTracking moved(motion, options);
@@ -56,7 +56,7 @@ TEST(SurfaceTracker, ALostFrameKeepsTheMotion) {
       << moved.report.reason;
   EXPECT_EQ(moved.graph.motions[0].translation, Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(moved.graph.motions[0].rotation, Eigen::Matrix3d::Identity());
-  options = TrackerOptions::Defaults();
+  options = TrackerOptions();
   options.max_rotation = 0.01;
   const CornerTracking turned(MakeMotion({0, 0.03, 0}, {0, 0, 0}), options);
   EXPECT_EQ(turned.report.state, "lost");
@@ -216,7 +216,7 @@ TEST(SurfaceTracker, TellsWhichNodesWereSeen) {
   BendingSheet sheet;
   sheet.live.labels.colRange(sheet.live.labels.cols / 2, sheet.live.labels.cols)
       .setTo(9);
-  TrackerOptions options = TrackerOptions::Defaults();
+  TrackerOptions options;
   options.min_fit = 0;
   SurfaceReport report;
   MakeTracker(options).Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(),
@@ -236,31 +236,27 @@ TEST(SurfaceTracker, TellsWhichNodesWereSeen) {
 
 TEST(TrackerOptions, RefuseValuesOutOfRange) {
   const auto refused = [](auto set, const std::string& message) {
-    TrackerOptions options = TrackerOptions::Defaults();
+    TrackerOptions options;
     set(&options);
     ExpectInputError([&] { MakeTracker(options); }, message);
   };
-  refused([](TrackerOptions* o) { o->rigid.clear(); },
-          "rigid stages = 0: expected at least one");
-  refused([](TrackerOptions* o) { o->non_rigid.clear(); },
-          "non_rigid stages = 0: expected at least one");
-  refused([](TrackerOptions* o) { o->rigid[0].stride = 0; },
-          "stride = 0: expected 1..32 pixels");
-  refused([](TrackerOptions* o) { o->rigid[0].rounds = -1; },
-          "rounds = -1: expected >= 0");
-  refused([](TrackerOptions* o) { o->rigid[0].gates.distance = -1; },
-          "gate distance = -1");
+  refused([](TrackerOptions* o) { o->rigid_distance = -1; },
+          "rigid_distance = -1: expected metres > 0");
+  refused([](TrackerOptions* o) { o->non_rigid_angle = 200; },
+          "non_rigid_angle = 200: expected 0..180 degrees, not 0");
+  refused([](TrackerOptions* o) { o->grazing_angle = 100; },
+          "grazing_angle = 100");
   refused([](TrackerOptions* o) { o->prior_anneal = 0.5; },
           "prior_anneal = 0.5: expected >= 1");
   refused([](TrackerOptions* o) { o->min_correspondences = 5; },
-          "min_correspondences = 5: expected >= 6");
+          "min_correspondences = 5: expected pairs >= 6");
   refused([](TrackerOptions* o) { o->min_accepted = 2; },
           "min_accepted = 2: expected 0..1");
   refused([](TrackerOptions* o) { o->min_fit = 2; }, "min_fit = 2: expected");
   refused([](TrackerOptions* o) { o->max_translation = 0; },
           "max_translation = 0: expected metres > 0");
   refused([](TrackerOptions* o) { o->max_rotation = 0; },
-          "max_rotation = 0: expected radians > 0");
+          "max_rotation = 0: expected 0..180 degrees, not 0");
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ class TravelTerm : public EnergyTerm {
 SurfaceTracker MakeSluggishTracker() {
   TermRegistry terms = BuiltinTerms();
   terms.Register("travel", [] { return std::make_unique<TravelTerm>(); });
-  return MakeTracker(TrackerOptions::Defaults(), "travel(weight=1e5)", terms);
+  return MakeTracker(TrackerOptions(), "travel(weight=1e5)", terms);
 }
 
 TEST(TermInput, ATermMayHoldARigidSurfaceWhereItWas) {
@@ -89,7 +89,7 @@ TEST(TermInput, ATermIsToldTheAnnealing) {
   TermRegistry terms = BuiltinTerms();
   terms.Register("notes",
                  [&notes] { return std::make_unique<AnnealNotes>(&notes); });
-  TrackerOptions options = TrackerOptions::Defaults();
+  TrackerOptions options;
   options.prior_anneal = 6;
   BendingSheet sheet;
   SurfaceReport report;

@@ -66,7 +66,7 @@ inline std::vector<ModelSample> SamplesOf(const LiveView& view,
 
 /// A tracker with the paper's terms and those of `terms`.
 inline SurfaceTracker MakeTracker(
-    const TrackerOptions& options = TrackerOptions::Defaults(),
+    const TrackerOptions& options = {},
     const std::string& further_terms = "",
     const TermRegistry& terms = BuiltinTerms()) {
   return SurfaceTracker(

@@ -151,19 +151,19 @@ TEST(RayCaster, ResultDoesNotDependOnThreads) {
 TEST(RayCastOptions, RefuseValuesOutOfRange) {
   ExpectInputError(
       [] {
-        RayCastOptions{0, 6, 0.01}.Check();
+        CheckOptions(RayCastOptions{0, 6, 0.01});
       },
-      "ray_min_depth = 0: expected metres > 0");
+      "min_depth = 0: expected metres > 0");
   ExpectInputError(
       [] {
-        RayCastOptions{1, 1, 0.01}.Check();
+        CheckOptions(RayCastOptions{1, 1, 0.01});
       },
-      "ray_max_depth = 1: expected metres > ray_min_depth");
+      "max_depth = 1: expected metres > ray_min_depth");
   ExpectInputError(
       [] {
-        RayCastOptions{1, 2, -1}.Check();
+        CheckOptions(RayCastOptions{1, 2, -1});
       },
-      "ray_min_weight = -1: expected >= 0");
+      "min_weight = -1: expected >= 0");
 }
 
 TEST(RayCaster, DoesNotDependOnTheNumberOfThreads) {

@@ -109,11 +109,11 @@ TEST(GraphCut, WithoutEvidenceEverythingIsBackground) {
 TEST(GraphCut, NamesBadOptionsAndSizes) {
   GraphCutOptions options;
   options.core_erosion = 0;
-  ExpectInputError([&] { options.Check(); },
+  ExpectInputError([&] { CheckOptions(options); },
                    "core_erosion = 0: expected 1..100 pixels");
   options = {};
   options.color_share = 2;
-  ExpectInputError([&] { options.Check(); }, "color_share = 2");
+  ExpectInputError([&] { CheckOptions(options); }, "color_share = 2");
   const cv::Mat_<float> small(3, 3, 0.0f);
   ExpectInputError(
       [&] {

@@ -17,7 +17,7 @@ class HeldPartsTest : public SplitterTest {
   HeldPartsTest() { Merge("person+teddy bear,person+suitcase"); }
   void Merge(const std::string& groups) {
     SplitOptions options = SceneOptions();
-    options.merge_touching = ParseMergeGroups(groups);
+    options.merge_touching = groups;
     UseOptions(options);
   }
   struct Toy {
@@ -206,11 +206,13 @@ TEST(MergeGroups, NameWhatDoesNotParse) {
   }
 }
 
-TEST(RigidObjectsOption, IsOneOfTwoWords) {
-  EXPECT_EQ(ParseRigidObjects("separate"), RigidObjects::kSeparate);
-  EXPECT_EQ(ParseRigidObjects("background"), RigidObjects::kBackground);
-  ExpectInputError([] { ParseRigidObjects("true"); },
+TEST(SplitOptions, RigidObjectsIsOneOfTwoWords) {
+  SplitOptions options;
+  options.rigid_objects = "true";
+  ExpectInputError([&] { options.Check(); },
                    "rigid_objects = true: expected background or separate");
+  options.rigid_objects = "separate";
+  EXPECT_NO_THROW(options.Check());
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class HoldersTest : public SplitterTest {
  protected:
   void Merge(const std::string& groups) {
     SplitOptions options = SceneOptions();
-    options.merge_touching = ParseMergeGroups(groups);
+    options.merge_touching = groups;
     UseOptions(options);
   }
   /// A frame of cards; card i has the truth 1 + i.

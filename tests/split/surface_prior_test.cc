@@ -134,11 +134,11 @@ TEST_F(GatherEvidenceTest, NothingSeenMakesAnEmptyCrop) {
 TEST(PriorOptions, NamesFieldAndBound) {
   PriorOptions options;
   options.mask_weight = 0;
-  ExpectInputError([&] { options.Check(); }, "mask_weight = 0");
+  ExpectInputError([&] { CheckOptions(options); }, "mask_weight = 0");
   options = {};
   options.surface_gate = -1;
-  ExpectInputError([&] { options.Check(); },
-                   "surface_gate = -1: expected positive metres");
+  ExpectInputError([&] { CheckOptions(options); },
+                   "surface_gate = -1: expected metres > 0");
 }
 
 }  // namespace

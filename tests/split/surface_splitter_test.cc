@@ -145,7 +145,7 @@ TEST_F(SurfaceSplitterTest, SpuriousDetectionsDoNotBecomeSurfaces) {
 
 TEST_F(SurfaceSplitterTest, RigidClassesAreSurfacesOnRequest) {
   SplitOptions options = SceneOptions();
-  options.rigid_objects = RigidObjects::kSeparate;
+  options.rigid_objects = "separate";
   UseOptions(options);
   LayeredScene scene;
   scene.Add(kCard, 2.0, 1);

@@ -90,6 +90,18 @@ std::vector<Mention> ReadPages() {
   return mentions;
 }
 
+/// Every option of the method, of which --help shows the common ones.
+Flags MethodOptions() {
+  static const std::regex row(R"(\| `([a-z_]+)` \|)");
+  const std::string table = RunProgram("sf_run", "--print_options").output;
+  Flags names;
+  for (std::sregex_iterator i(table.begin(), table.end(), row), end; i != end;
+       ++i) {
+    names.insert((*i)[1]);
+  }
+  return names;
+}
+
 /// Flags that every program and script takes, by its name.
 std::map<std::string, Flags> KnownFlags() {
   std::map<std::string, Flags> known;
@@ -103,6 +115,7 @@ std::map<std::string, Flags> KnownFlags() {
           help.substr(begin, help.find_first_of("= \n", begin) - begin));
     }
   }
+  for (const std::string& name : MethodOptions()) known["sf_run"].insert(name);
   known["compare_presets.sh"] = known["quickstart.sh"] = known["sf_run"];
   return known;
 }
@@ -117,6 +130,15 @@ Flags FlagsOfScript(const std::string& path) {
     if (std::regex_match(line, found, listed)) flags.insert(found[1]);
   }
   return flags;
+}
+
+TEST(DocumentedFlags, OptionsOfTheMethodAreListedAsTheyAre) {
+  std::ifstream stream(RepositoryRoot() / "docs/options.md");
+  if (!stream) GTEST_SKIP() << "not built in the repository";
+  const std::string page{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_EQ(page, RunProgram("sf_run", "--print_options").output)
+      << "sf_run --print_options >docs/options.md makes it anew";
+  EXPECT_GT(MethodOptions().size(), 60u);
 }
 
 TEST(DocumentedFlags, AreThoseOfThePrograms) {

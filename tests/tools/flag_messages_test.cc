@@ -23,12 +23,12 @@ class FlagMessages : public ::testing::Test {
 };
 
 TEST_F(FlagMessages, NameTheFlagWhereTheOptionHasAnotherName) {
-  RunRefuses("--background_voxel=-1", "--background_voxel = -1: expected metr");
-  RunRefuses("--object_voxel=1.5", "--object_voxel = 1.5: expected metres");
+  RunRefuses("--background_voxel=-1", "--background_voxel = -1: expected 0.001");
+  RunRefuses("--object_voxel=1.5", "--object_voxel = 1.5: expected 0.001..1");
   RunRefuses("--background_voxel=0.0009",
-             "--background_voxel = 0.0009: expected metres from 0.001");
+             "--background_voxel = 9e-04: expected 0.001..1 metres, not 1");
   RunRefuses("--object_voxel=1e-9",
-             "--object_voxel = 1e-09: expected metres from 0.001 to below 1");
+             "--object_voxel = 1e-09: expected 0.001..1 metres, not 1");
   RunRefuses("--background_truncation=0.01",
              "--background_truncation = 0.01: expected 2 to 50 voxels");
   RunRefuses("--object_voxel=0.02", "--object_truncation = 0.03: expected 2 ");
@@ -44,7 +44,7 @@ TEST_F(FlagMessages, NameTheFlagWhereTheOptionHasAnotherName) {
 
 TEST_F(FlagMessages, NameTheFlagOfAnOptionOfTheSameName) {
   RunRefuses("--render_stride=3", "--render_stride = 3: expected a divisor");
-  RunRefuses("--max_nodes=0", "--max_nodes = 0: expected >= 1");
+  RunRefuses("--max_nodes=0", "--max_nodes = 0: expected nodes >= 1");
   RunRefuses("--far_spacing=0.01",
              "--far_spacing = 0.01: expected metres >= near_spacing");
   RunRefuses("--min_score=2", "--min_score = 2: expected 0..1");
@@ -74,9 +74,9 @@ TEST_F(FlagMessages, NameTheTermsAndWhatIsWrongInThem) {
 
 TEST_F(FlagMessages, SayAnglesInTheFlagsUnit) {
   RunRefuses("--rigid_angle=200",
-             "--rigid_angle = 200: expected an angle in (0, 180] degrees");
+             "--rigid_angle = 200: expected 0..180 degrees, not 0");
   RunRefuses("--non_rigid_angle=-5",
-             "--non_rigid_angle = -5: expected an angle in (0, 180] degrees");
+             "--non_rigid_angle = -5: expected 0..180 degrees, not 0");
 }
 
 TEST_F(FlagMessages, NumbersThatNoMachineCouldServeAreRefused) {

@@ -226,7 +226,7 @@ TEST_F(SfRun, BadOptionsEndWithTwoAndLeaveNothing) {
   refused("--preset=fusion", "--preset = fusion: expected background_only");
   refused("--terms=arapp", "term 'arapp' is unknown: expected arap");
   refused("--linear_solver=lu", "--linear_solver = lu: expected auto");
-  refused("--object_voxel=0", "--object_voxel = 0: expected metres");
+  refused("--object_voxel=0", "--object_voxel = 0: expected 0.001..1");
   refused("--mask_kind=soft", "--mask_kind = soft: expected rigid");
   refused("--masks=/no/such/folder", "/no/such/folder");
   refused("--intrinsics=1,2", "--intrinsics=1,2: expected fx,fy,cx,cy");
@@ -265,6 +265,18 @@ TEST_F(SfRun, RefusesToOverwriteUnlessTold) {
   EXPECT_EQ(Run("other", "--max_frames=2").exit_code, 2);
   EXPECT_EQ(Run("other", "--max_frames=2 --overwrite").exit_code, 0);
   EXPECT_EQ(folder_.Read("other/mine.txt"), "do not touch");
+}
+
+TEST_F(SfRun, PresetsAreDefaultsThatFlagsOverrule) {
+  Synthesize("--frames=1");
+  const auto identity = [&](const std::string& flags) {
+    return Run("none", "--print_identity " + flags).output;
+  };
+  EXPECT_THAT(identity(""), HasSubstr("\"deform_objects\": \"true\""));
+  EXPECT_THAT(identity("--preset=cofusion"),
+              HasSubstr("\"deform_objects\": \"false\""));
+  EXPECT_THAT(identity("--preset=cofusion --deform_objects"),
+              HasSubstr("\"deform_objects\": \"true\""));
 }
 
 TEST_F(SfRun, HelpNamesOwnFlagsAndFitsAScreen) {

@@ -346,7 +346,7 @@ TEST(TsdfOptions, RefuseValuesOutOfRange) {
       [] {
         TsdfVolume({0, 0.04, 64});
       },
-      "voxel_size = 0: expected metres between 0 and 1");
+      "voxel = 0: expected 0.001..1 metres, not 1");
   ExpectInputError(
       [] {
         TsdfVolume({0.01, 0.015, 64});

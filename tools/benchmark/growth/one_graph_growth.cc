@@ -98,8 +98,8 @@ class ModelMeasurement {
   int repetitions_;
 };
 
-SurfaceOptions OptionsFor(const GrowthSizes& sizes, SurfaceOptions options) {
-  options.graph.near_spacing = options.graph.far_spacing = sizes.spacing;
+SurfaceOptions OptionsFor(const GrowthSizes& sizes,
+                          const SurfaceOptions& options) {
   return WithVoxels(options, options.tsdf.voxel_size * sizes.voxel_factor);
 }
 
@@ -118,11 +118,13 @@ GrowthTable OneGraphTable(const GrowthSizes& sizes) {
   const PipelineOptions defaults;
   const SurfaceOptions room = OptionsFor(sizes, defaults.background);
   const SurfaceOptions person = OptionsFor(sizes, defaults.object);
-  SurfaceOptions unlimited = person;
-  unlimited.graph.max_nodes = std::numeric_limits<int>::max();
-  measure("split", MakeSplitModel(frames, room, person));
-  measure("one_graph_preset", MakeOneGraphModel(frames, room));
-  measure("one_graph_as_fine", MakeOneGraphModel(frames, unlimited));
+  GraphOptions graph;
+  graph.near_spacing = graph.far_spacing = sizes.spacing;
+  GraphOptions unlimited = graph;
+  unlimited.max_nodes = std::numeric_limits<int>::max();
+  measure("split", MakeSplitModel(frames, room, person, graph));
+  measure("one_graph_preset", MakeOneGraphModel(frames, room, graph));
+  measure("one_graph_as_fine", MakeOneGraphModel(frames, person, unlimited));
   return table;
 }
 

@@ -44,8 +44,9 @@ std::vector<ModelSample> SamplesOf(const LiveView& live, int label) {
 /// The surface of the pixels labelled `id`.
 PairedSurface MakePaired(const LiveView& live, int id, SurfaceKind kind,
                          const SurfaceOptions& options,
+                         const GraphOptions& graph,
                          std::vector<Correspondence> pairs) {
-  auto surface = std::make_unique<Surface>(id, "", kind, 0, options);
+  auto surface = std::make_unique<Surface>(id, "", kind, 0, options, graph);
   surface->Initialize(live);
   for (Correspondence& pair : pairs) {
     pair.model.skinning = surface->skinning_index().Skin(pair.model.point);
@@ -66,7 +67,7 @@ FramePair::FramePair(int height) {
   before = LabelledView(scene, 0);
   after = LabelledView(scene, 1);
   const WarpField still(MakeRigidGraph(Rigid3d::Identity()));
-  const AssociationGates gates = TrackerOptions::Defaults().non_rigid[0].gates;
+  const AssociationGates gates = TrackerOptions().NonRigidStages()[0].gates;
   for (int label = 0; label <= kPeople; ++label) {
     const Association association = Associate(SamplesOf(before, label), still,
                                               after, label, kStride, gates);
@@ -76,13 +77,14 @@ FramePair::FramePair(int height) {
 
 SceneModel MakeSplitModel(const FramePair& frames,
                           const SurfaceOptions& background,
-                          const SurfaceOptions& object) {
+                          const SurfaceOptions& object,
+                          const GraphOptions& graph) {
   SceneModel model;
   model.surfaces.push_back(MakePaired(frames.before, 0, SurfaceKind::kRigid,
-                                      background, frames.pairs[0]));
+                                      background, graph, frames.pairs[0]));
   for (int label = 1; label <= kPeople; ++label) {
     model.surfaces.push_back(MakePaired(frames.before, label,
-                                        SurfaceKind::kNonRigid, object,
+                                        SurfaceKind::kNonRigid, object, graph,
                                         frames.pairs[label]));
   }
   model.after = frames.after;
@@ -90,14 +92,15 @@ SceneModel MakeSplitModel(const FramePair& frames,
 }
 
 SceneModel MakeOneGraphModel(const FramePair& frames,
-                             const SurfaceOptions& options) {
+                             const SurfaceOptions& options,
+                             const GraphOptions& graph) {
   std::vector<Correspondence> all;
   for (const auto& pairs : frames.pairs) {
     all.insert(all.end(), pairs.begin(), pairs.end());
   }
   SceneModel model;
   model.surfaces.push_back(MakePaired(WithoutLabels(frames.before), 0,
-                                      SurfaceKind::kNonRigid, options,
+                                      SurfaceKind::kNonRigid, options, graph,
                                       std::move(all)));
   model.after = WithoutLabels(frames.after);
   return model;

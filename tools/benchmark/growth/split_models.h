@@ -37,11 +37,13 @@ struct SceneModel {
 /// A rigid room and one deformation graph a person.
 SceneModel MakeSplitModel(const FramePair& frames,
                           const SurfaceOptions& background,
-                          const SurfaceOptions& object);
+                          const SurfaceOptions& object,
+                          const GraphOptions& graph);
 
 /// One deformation graph over everything, for the same pairs.
 SceneModel MakeOneGraphModel(const FramePair& frames,
-                             const SurfaceOptions& options);
+                             const SurfaceOptions& options,
+                             const GraphOptions& graph);
 
 }  // namespace splitfusion
 

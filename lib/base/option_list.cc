@@ -1,0 +1,124 @@
+#include "splitfusion/lib/base/option_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/number_text.h"
+
+namespace splitfusion {
+namespace {
+
+std::string Joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 < words.size() ? ", " : " or ";
+    text += words[i];
+  }
+  return text;
+}
+
+}  // namespace
+
+bool Range::Holds(double value) const {
+  return std::isfinite(value) && (above_low ? value > low : value >= low) &&
+         (below_high ? value < high : value <= high);
+}
+
+std::string Range::Text(const std::string& unit) const {
+  const bool from = std::isfinite(low), to = std::isfinite(high);
+  const std::string before = unit.empty() ? "" : unit + " ";
+  const std::string after = unit.empty() ? "" : " " + unit;
+  if (!from && !to) return "a number" + (unit.empty() ? "" : " of " + unit);
+  if (!to) return before + (above_low ? "> " : ">= ") + NumberText(low);
+  if (!from) return before + (below_high ? "< " : "<= ") + NumberText(high);
+  std::string text = NumberText(low) + ".." + NumberText(high) + after;
+  if (above_low) text += ", not " + NumberText(low);
+  if (below_high) text += ", not " + NumberText(high);
+  return text;
+}
+
+std::string Option::Expected() const {
+  if (std::holds_alternative<bool*>(value)) return "true or false";
+  if (std::holds_alternative<std::string*>(value)) {
+    return choices.empty() ? "a text" : Joined(choices);
+  }
+  return range.Text(unit);
+}
+
+std::string Option::ValueText() const {
+  if (const auto* text = std::get_if<std::string*>(&value)) return **text;
+  if (const auto* on = std::get_if<bool*>(&value)) {
+    return **on ? "true" : "false";
+  }
+  if (const auto* count = std::get_if<int*>(&value)) {
+    return std::to_string(**count);
+  }
+  return NumberText(*std::get<double*>(value));
+}
+
+void Option::Check() const {
+  bool good = true;
+  if (const auto* number = std::get_if<double*>(&value)) {
+    good = range.Holds(**number);
+  } else if (const auto* count = std::get_if<int*>(&value)) {
+    good = range.Holds(**count);
+  } else if (const auto* text = std::get_if<std::string*>(&value)) {
+    good = choices.empty() || std::count(choices.begin(), choices.end(),
+                                         **text) > 0;
+  }
+  if (!good) throw OptionError(name, ValueText(), Expected());
+}
+
+Option& OptionList::Number(const std::string& name, int* value, const Range& range,
+                        const std::string& unit, const std::string& help) {
+  options_.push_back({prefix_ + name, value, range, {}, unit, help});
+  return options_.back();
+}
+
+Option& OptionList::Number(const std::string& name, double* value,
+                        const Range& range, const std::string& unit,
+                        const std::string& help) {
+  options_.push_back({prefix_ + name, value, range, {}, unit, help});
+  return options_.back();
+}
+
+Option& OptionList::Switch(const std::string& name, bool* value,
+                        const std::string& help) {
+  options_.push_back({prefix_ + name, value, {}, {}, "", help});
+  return options_.back();
+}
+
+Option& OptionList::Choice(const std::string& name, std::string* value,
+                        const std::vector<std::string>& choices,
+                        const std::string& help) {
+  options_.push_back({prefix_ + name, value, {}, choices, "", help});
+  return options_.back();
+}
+
+Option& OptionList::Text(const std::string& name, std::string* value,
+                      const std::string& help) {
+  options_.push_back({prefix_ + name, value, {}, {}, "", help});
+  return options_.back();
+}
+
+void OptionList::Demand(bool holds, const std::string& name,
+                        const std::string& expected) {
+  if (holds) return;
+  for (std::size_t i = options_.size(); i-- > 0;) {
+    if (options_[i].name != prefix_ + name) continue;
+    violations_.emplace_back(i, expected);
+    return;
+  }
+  throw std::logic_error("no option " + prefix_ + name);
+}
+
+void OptionList::Check() const {
+  for (const Option& option : options_) option.Check();
+  if (violations_.empty()) return;
+  const auto& [index, expected] = violations_.front();
+  throw OptionError(options_[index].name, options_[index].ValueText(),
+                    expected);
+}
+
+}  // namespace splitfusion
