@@ -14,7 +14,8 @@ PipelineOptions::PipelineOptions() {
 
 void PipelineOptions::List(OptionList* list) {
   list->Text("terms", &terms,
-             "The energy, Eq. 4: NAME(weight=,loss=,scale=) ...").common = true;
+             "The energy, Eq. 4: NAME(weight=,loss=,scale=) ...")
+      .common = true;
   list->Switch("split_scene", &split_scene,
                "Split the scene; else one surface holds all of it.");
   list->Switch("model_objects", &model_objects,
@@ -37,10 +38,10 @@ void PipelineOptions::List(OptionList* list) {
                "pixels", "With fewer live ones a surface is not tracked.");
   list->Number("min_exposure", &min_exposure, Range::Share(), "",
                "Surfaces are carried on, not tracked, while less of them is in "
-               "view beside others; 0 = never.").common = true;
+               "view beside others; 0 = never.")
+      .common = true;
   list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
-               "of the image",
-               "A surface is modelled once it covers so much.");
+               "of the image", "A surface is modelled once it covers so much.");
   list->Number("max_lost_young", &max_lost_young, Range::AtLeast(1), "frames",
                "A surface that is lost so often on end, and was not tracked "
                "more often, begins anew.");

@@ -99,17 +99,16 @@ bool SequenceRun::Resume() {
   work_->reader.SkipTo(done_);
   folder_.RecordResumption(done_);
   if (hooks_.tell) {
-    hooks_.tell(folder_.root() + ": goes on after " + std::to_string(done_) + " of " +
-                std::to_string(work_->reader.size()) + " frames");
+    hooks_.tell(folder_.root() + ": goes on after " + std::to_string(done_) +
+                " of " + std::to_string(work_->reader.size()) + " frames");
   }
   return true;
 }
 
 void SequenceRun::StartFromOther() {
-  ReadArchiveFile(
-      RunPaths(options_.from.run).KeptCheckpoint(options_.from.at),
-      kCheckpointVersion,
-      [&](ArchiveReader* archive) { SerializeState(archive); });
+  ReadArchiveFile(RunPaths(options_.from.run).KeptCheckpoint(options_.from.at),
+                  kCheckpointVersion,
+                  [&](ArchiveReader* archive) { SerializeState(archive); });
   work_->reader.SkipTo(done_);
 }
 
@@ -129,11 +128,10 @@ void SequenceRun::SerializeState(Archive* archive) {
 void SequenceRun::SaveCheckpoint() {
   const Stopwatch writing;
   if (options_.keep_checkpoints) {
-    WriteArchiveFile(
-        folder_.unfinished().KeptCheckpoint(
-            work_->reader.options().first_frame + done_),
-        kCheckpointVersion,
-        [&](ArchiveWriter* archive) { SerializeState(archive); });
+    WriteArchiveFile(folder_.unfinished().KeptCheckpoint(
+                         work_->reader.options().first_frame + done_),
+                     kCheckpointVersion,
+                     [&](ArchiveWriter* archive) { SerializeState(archive); });
   }
   WriteArchiveFile(folder_.unfinished().Checkpoint(), kCheckpointVersion,
                    [&](ArchiveWriter* archive) { Serialize(archive); });
@@ -305,8 +303,8 @@ void SequenceRun::WarnOfCoarseGraphs(int frame) {
 void SequenceRun::WarnOfSkippedFrames() const {
   const std::vector<BadFrame> skipped = work_->reader.skipped();
   if (skipped.empty()) return;
-  Warn(std::to_string(skipped.size()) + " frames are left out, the first: " +
-       skipped.front().reason);
+  Warn(std::to_string(skipped.size()) +
+       " frames are left out, the first: " + skipped.front().reason);
 }
 
 void SequenceRun::Warn(const std::string& line) const {

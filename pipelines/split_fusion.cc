@@ -264,9 +264,8 @@ void SplitFusion::FollowInstances(FrameReport* report) {
 
 void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
   const auto add = [&](int id, const std::string& label, SurfaceKind kind) {
-    auto surface =
-        std::make_unique<Surface>(id, label, kind, frame.index, OptionsOf(id),
-                                  options_.graph);
+    auto surface = std::make_unique<Surface>(id, label, kind, frame.index,
+                                             OptionsOf(id), options_.graph);
     if (!surface->Initialize(live_)) return;
     surfaces_[id] = std::move(surface);
     SurfaceReport born;

@@ -50,9 +50,8 @@ void SplitFusion::SerializeSurfaces(Archive* archive) {
   if constexpr (Archive::kReads) {
     surfaces_.clear();
     for (const auto& [id, kind, first_frame] : origins) {
-      surfaces_[id] =
-          std::make_unique<Surface>(id, "", kind, first_frame, OptionsOf(id),
-                                    options_.graph);
+      surfaces_[id] = std::make_unique<Surface>(id, "", kind, first_frame,
+                                                OptionsOf(id), options_.graph);
     }
   }
   for (const auto& [id, surface] : surfaces_) (*archive)(*surface);

@@ -74,8 +74,7 @@ void SurfaceOptions::List(OptionList* list) {
   list->Number("looks", &looks, Range::AtLeast(1), "frames",
                "A new part of a deforming surface is meshed once seen in so "
                "many; in more where it was found empty before.");
-  list->Number("min_piece", &min_piece_area, Range::AtLeast(0),
-               "square metres",
+  list->Number("min_piece", &min_piece_area, Range::AtLeast(0), "square metres",
                "Smaller pieces of the final mesh are left out.");
   list->Number("mesh_weight", &min_mesh_weight,
                {0, MeshExtractor::kMaxMinWeight, true}, "",

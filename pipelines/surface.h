@@ -54,7 +54,8 @@ class Surface {
   /// `id` 0 is the background. The canonical frame is the camera frame of the
   /// first fused frame.
   Surface(int id, std::string label, SurfaceKind kind, int first_frame,
-          const SurfaceOptions& options, const GraphOptions& graph_options = {});
+          const SurfaceOptions& options,
+          const GraphOptions& graph_options = {});
 
   /// First observation: fills the volume in the camera frame and places the
   /// graph. Returns whether there is a surface to speak of.

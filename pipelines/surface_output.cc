@@ -35,8 +35,8 @@ void WriteSurface(const RunPaths& paths, const Surface& surface,
                   const WarpedOutput& warped) {
   const std::string folder = paths.Surface(surface.id(), surface.label());
   std::error_code ignored;  // Files that cannot be written say so.
-  std::filesystem::create_directory(
-      std::filesystem::path(folder).parent_path(), ignored);
+  std::filesystem::create_directory(std::filesystem::path(folder).parent_path(),
+                                    ignored);
   WritePly(folder + "/mesh.ply", surface.mesh());
   surface.volume().Write(folder + "/tsdf.vdb");
   WriteGraph(folder + "/graph.json", surface.graph(),

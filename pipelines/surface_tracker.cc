@@ -111,13 +111,15 @@ void TrackerOptions::List(OptionList* list) {
       .common = true;
   list->Number("rigid_angle", &rigid_angle, {0, 180, true}, "degrees",
                "First gate of normals in the rigid stages; the last has two "
-               "thirds of it.").common = true;
+               "thirds of it.")
+      .common = true;
   list->Number("non_rigid_distance", &non_rigid_distance, Range::Above(0),
                "metres",
                "First gate of the non-rigid stages; the last has half of it.")
       .common = true;
   list->Number("non_rigid_angle", &non_rigid_angle, {0, 180, true}, "degrees",
-               "Gate of normals in the non-rigid stages.").common = true;
+               "Gate of normals in the non-rigid stages.")
+      .common = true;
   list->Number("grazing_angle", &grazing_angle, {0, 90, true}, "degrees",
                "Between live normal and view ray; beyond, depth is not used.");
   list->Number("prior_anneal", &prior_anneal, Range::AtLeast(1), "",
@@ -127,8 +129,9 @@ void TrackerOptions::List(OptionList* list) {
                "A stage ends when the cost changes by less, relative.");
   list->Number("min_correspondences", &min_correspondences, Range::AtLeast(6),
                "pairs", "Fewer in the last round: lost.");
-  list->Number("min_accepted", &min_accepted, Range::Share(), "",
-               "Less of the samples on live depth of the surface paired: lost.");
+  list->Number(
+      "min_accepted", &min_accepted, Range::Share(), "",
+      "Less of the samples on live depth of the surface paired: lost.");
   list->Number("min_fit", &min_fit, Range::Share(), "",
                "Less of a deforming surface in view lies on it: lost.");
   list->Number("max_translation", &max_translation, Range::Above(0), "metres",

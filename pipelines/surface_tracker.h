@@ -23,8 +23,8 @@ struct TrackingStage {
 
 /// How one surface is tracked in one frame.
 struct TrackerOptions {
-  double rigid_distance = 0.10;      ///< First gate of the rigid stages, metres.
-  double rigid_angle = 30;           ///< First one of normals, degrees.
+  double rigid_distance = 0.10;  ///< First gate of the rigid stages, metres.
+  double rigid_angle = 30;       ///< First one of normals, degrees.
   double non_rigid_distance = 0.10;  ///< First gate of the non-rigid stages.
   double non_rigid_angle = 45;       ///< Of normals, degrees.
   double grazing_angle = 75;  ///< Between live normal and view ray, degrees.

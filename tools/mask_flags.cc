@@ -68,7 +68,8 @@ void CheckMasksFit(const TumReader& reader, std::size_t frames_with_masks,
                << frames << " frames; in the others nothing is detected";
 }
 
-/// Warns of names in `groups` (--merge_touching) that neither the table nor `known` has.
+/// Warns of names in `groups` (--merge_touching) that neither the table nor
+/// `known` has.
 void WarnOfUnknownClasses(const std::string& groups, const LabelTable& table,
                           const Classes& known) {
   Classes named;

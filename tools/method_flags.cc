@@ -44,8 +44,8 @@ void RegisterMethodFlags() {
   for (std::size_t i = 0; i < storage.list.options().size(); ++i) {
     const Option& option = storage.list.options()[i];
     storage.help.push_back(HelpOf(option));
-    const char* file = option.common ? "tools/method_flags.cc"
-                                     : "tools/method_details.cc";
+    const char* file =
+        option.common ? "tools/method_flags.cc" : "tools/method_details.cc";
     std::visit(
         [&](auto* value) {
           using Pointer = decltype(value);
@@ -69,8 +69,8 @@ void TakeMethodFlags(PipelineOptions* options) {
     }
     std::visit(
         [&](auto* value) {
-          *value = *std::get<decltype(value)>(
-              Storage().list.options()[i].value);
+          *value =
+              *std::get<decltype(value)>(Storage().list.options()[i].value);
         },
         option.value);
   }

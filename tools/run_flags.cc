@@ -81,8 +81,8 @@ bool IsRunFlag(const gflags::CommandLineFlagInfo& flag) {
       std::filesystem::path(flag.filename).filename().string();
   for (const char* own :
        {"sf_run.cc", "run_flags.cc", "mask_flags.cc", "network_flags.cc",
-        "sequence_flags.cc", "identity_flags.cc",
-        "method_flags.cc", "method_details.cc"}) {
+        "sequence_flags.cc", "identity_flags.cc", "method_flags.cc",
+        "method_details.cc"}) {
     if (file == own) return true;
   }
   return false;
@@ -92,7 +92,7 @@ std::string FlagfileText() {
   // Where a run goes and what may be replaced is not a part of what it does:
   // --flagfile=RUN/options.flags --output=NEW repeats it.
   const std::set<std::string> left_out = {
-      "output", "overwrite", "keep_same",     "resume",
+      "output", "overwrite",     "keep_same",     "resume",
       "set",    "print_options", "print_identity"};
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);

@@ -34,16 +34,12 @@ DEFINE_bool(keep_same, false,
 DEFINE_bool(resume, true, "Go on with an unfinished run of the same options.");
 DEFINE_int32(checkpoint_every, 0,
              "Frames between states; 0 = by time, -1 = never.");
-DEFINE_bool(
-    keep_checkpoints, false,
-    "Keep all states in RUN/checkpoints, for --from.");
-DEFINE_string(from, "",
-              "Run of --keep_checkpoints to start from.");
+DEFINE_bool(keep_checkpoints, false,
+            "Keep all states in RUN/checkpoints, for --from.");
+DEFINE_string(from, "", "Run of --keep_checkpoints to start from.");
 DEFINE_int32(at, 0, "First frame after that state.");
-DEFINE_bool(print_options, false,
-            "Print all options of the method, no run.");
-DEFINE_bool(print_identity, false,
-            "Print what decides the result, no run.");
+DEFINE_bool(print_options, false, "Print all options of the method, no run.");
+DEFINE_bool(print_identity, false, "Print what decides the result, no run.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,

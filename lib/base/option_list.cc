@@ -64,40 +64,41 @@ void Option::Check() const {
   } else if (const auto* count = std::get_if<int*>(&value)) {
     good = range.Holds(**count);
   } else if (const auto* text = std::get_if<std::string*>(&value)) {
-    good = choices.empty() || std::count(choices.begin(), choices.end(),
-                                         **text) > 0;
+    good = choices.empty() ||
+           std::count(choices.begin(), choices.end(), **text) > 0;
   }
   if (!good) throw OptionError(name, ValueText(), Expected());
 }
 
-Option& OptionList::Number(const std::string& name, int* value, const Range& range,
-                        const std::string& unit, const std::string& help) {
+Option& OptionList::Number(const std::string& name, int* value,
+                           const Range& range, const std::string& unit,
+                           const std::string& help) {
   options_.push_back({prefix_ + name, value, range, {}, unit, help});
   return options_.back();
 }
 
 Option& OptionList::Number(const std::string& name, double* value,
-                        const Range& range, const std::string& unit,
-                        const std::string& help) {
+                           const Range& range, const std::string& unit,
+                           const std::string& help) {
   options_.push_back({prefix_ + name, value, range, {}, unit, help});
   return options_.back();
 }
 
 Option& OptionList::Switch(const std::string& name, bool* value,
-                        const std::string& help) {
+                           const std::string& help) {
   options_.push_back({prefix_ + name, value, {}, {}, "", help});
   return options_.back();
 }
 
 Option& OptionList::Choice(const std::string& name, std::string* value,
-                        const std::vector<std::string>& choices,
-                        const std::string& help) {
+                           const std::vector<std::string>& choices,
+                           const std::string& help) {
   options_.push_back({prefix_ + name, value, {}, choices, "", help});
   return options_.back();
 }
 
 Option& OptionList::Text(const std::string& name, std::string* value,
-                      const std::string& help) {
+                         const std::string& help) {
   options_.push_back({prefix_ + name, value, {}, {}, "", help});
   return options_.back();
 }

@@ -38,11 +38,11 @@ struct Option {
   std::string name;  ///< That of its flag.
   /// The field that holds it; its default is that of the field.
   std::variant<bool*, int*, double*, std::string*> value;
-  Range range;                      ///< Of a number.
-  std::vector<std::string> choices; ///< Of a text; empty: any.
-  std::string unit;                 ///< Of a number, as "metres".
-  std::string help;                 ///< One or two sentences.
-  bool common = false;              ///< Shown by --help, not by --helpfull only.
+  Range range;                       ///< Of a number.
+  std::vector<std::string> choices;  ///< Of a text; empty: any.
+  std::string unit;                  ///< Of a number, as "metres".
+  std::string help;                  ///< One or two sentences.
+  bool common = false;  ///< Shown by --help, not by --helpfull only.
 
   /// What it may be, as in "metres > 0" or "a, b or c".
   std::string Expected() const;
@@ -60,18 +60,19 @@ class OptionList {
  public:
   /// Adds a number.
   Option& Number(const std::string& name, int* value, const Range& range,
-              const std::string& unit, const std::string& help);
+                 const std::string& unit, const std::string& help);
   /// Adds a number.
   Option& Number(const std::string& name, double* value, const Range& range,
-              const std::string& unit, const std::string& help);
+                 const std::string& unit, const std::string& help);
   /// Adds a choice of yes and no.
   Option& Switch(const std::string& name, bool* value, const std::string& help);
   /// Adds one word of some.
   Option& Choice(const std::string& name, std::string* value,
-              const std::vector<std::string>& choices, const std::string& help);
+                 const std::vector<std::string>& choices,
+                 const std::string& help);
   /// Adds any text.
   Option& Text(const std::string& name, std::string* value,
-            const std::string& help);
+               const std::string& help);
   /// Adds all options of a struct, their names after `prefix`.
   template <typename Options>
   void Part(const std::string& prefix, Options* options) {

@@ -168,13 +168,16 @@ void AddNodes(const TriangleMesh& mesh, const GraphOptions& options,
 void GraphOptions::List(OptionList* list) {
   list->Number("neighbors_per_point", &neighbors_per_point,
                {1, kMaxSkinningNodes}, "nodes",
-               "K, the nodes that carry a point (Eq. 3).").common = true;
+               "K, the nodes that carry a point (Eq. 3).")
+      .common = true;
   list->Number("neighbors_per_node", &neighbors_per_node, {1, 64}, "nodes",
                "Edges of a node.");
   list->Number("near_spacing", &near_spacing, Range::AtLeast(0.002), "metres",
-               "Node spacing of surfaces up to near_depth.").common = true;
+               "Node spacing of surfaces up to near_depth.")
+      .common = true;
   list->Number("far_spacing", &far_spacing, Range::AtLeast(0.002), "metres",
-               "Node spacing of surfaces from far_depth on.").common = true;
+               "Node spacing of surfaces from far_depth on.")
+      .common = true;
   list->Demand(far_spacing >= near_spacing, "far_spacing",
                "metres >= near_spacing");
   list->Number("near_depth", &near_depth, Range::Above(0), "metres",
@@ -183,7 +186,8 @@ void GraphOptions::List(OptionList* list) {
                "See far_spacing.");
   list->Demand(far_depth > near_depth, "far_depth", "metres > near_depth");
   list->Number("max_nodes", &max_nodes, Range::AtLeast(1), "nodes",
-               "Of a graph; its spacing grows to keep it.").common = true;
+               "Of a graph; its spacing grows to keep it.")
+      .common = true;
   list->Number("growth_batch", &growth_batch, Range::Share(), "",
                "New nodes wait until they are so many, as a part of the "
                "graph's (fewer, larger growths are faster).");

@@ -20,8 +20,8 @@ struct NodeSeed {
 /// Dijkstra search from all nodes at once); nodes whose regions touch are
 /// neighbours, at the length of the shortest path through the border. From
 /// these and their neighbours the `count` nearest are kept, both directions of
-/// an edge. Pieces of the mesh that hang apart are tied by the shortest edges in
-/// space, piece to piece, so that every node is connected with every other.
+/// an edge. Pieces of the mesh that hang apart are tied by the shortest edges
+/// in space, piece to piece, so that every node is connected with every other.
 ///
 /// `nodes`: canonical positions, metres; `seeds`: where the search from each of
 /// them begins; a node without is a piece by itself.

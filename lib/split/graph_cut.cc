@@ -199,8 +199,9 @@ void GraphCutOptions::List(OptionList* list) {
                "A mask eroded by so much is surely foreground.");
   list->Number("outer_dilation", &outer_dilation, {1, 200}, "pixels",
                "What is farther from a mask is surely background.");
-  list->Number("step_factor", &step_factor, Range::Above(0), "",
-               "A depth step of so many times the noise lowers an edge to 1/e.");
+  list->Number(
+      "step_factor", &step_factor, Range::Above(0), "",
+      "A depth step of so many times the noise lowers an edge to 1/e.");
   list->Number("step_offset", &step_offset, Range::AtLeast(0), "metres",
                "Is added to that step.");
   list->Number("concave_scale", &concave_scale, Range::Above(0), "",

@@ -6,13 +6,16 @@ namespace splitfusion {
 
 void SplitOptions::List(OptionList* list) {
   list->Number("min_score", &min_score, Range::Share(), "",
-               "A detection below makes no surface.").common = true;
+               "A detection below makes no surface.")
+      .common = true;
   list->Choice("rigid_objects", &rigid_objects, {"background", "separate"},
                "Rigid classes: background (until they move) or separate "
-               "(surfaces of their own).").common = true;
+               "(surfaces of their own).")
+      .common = true;
   list->Text("merge_touching", &merge_touching,
              "CLASS+CLASS,...: what touches an instance of an entry's first "
-             "class is a part of it, as in person+teddy bear.").common = true;
+             "class is a part of it, as in person+teddy bear.")
+      .common = true;
   list->Number("max_detection_area", &max_area, {0, 1, true}, "of the image",
                "A larger detection makes no surface.");
   list->Number("min_instance_pixels", &min_pixels, Range::AtLeast(1), "pixels",

@@ -242,8 +242,7 @@ void SurfaceSplitter::SettleNewcomer(int index, SplitWork* work) {
     work->result.decisions.push_back(MakeDecision("merged", segment));
     return;
   }
-  const bool held =
-      FindHolder(index, groups_, registry_, *work) > 0;
+  const bool held = FindHolder(index, groups_, registry_, *work) > 0;
   const bool large = CountWithDepth(pixels, work->frame.depth) >=
                      (held ? MinFollowedPixels(options_) : options_.min_pixels);
   const bool open = large && (held || !segment.only_held);

@@ -125,9 +125,11 @@ void FreeUnobserved(const internal::LeafBuffers& leaf, float free_space) {
 void TsdfOptions::List(OptionList* list) {
   // Finer voxels would need more memory than there is, and end in OpenVDB.
   list->Number("voxel", &voxel_size, {0.001, 1, false, true}, "metres",
-               "Edge of a voxel.").common = true;
+               "Edge of a voxel.")
+      .common = true;
   list->Number("truncation", &truncation, Range::Above(0), "metres",
-               "Truncation of the distances.").common = true;
+               "Truncation of the distances.")
+      .common = true;
   list->Demand(truncation >= 2 * voxel_size && truncation <= 50 * voxel_size,
                "truncation",
                "2 to 50 voxels (" + NumberText(2 * voxel_size) + " to " +

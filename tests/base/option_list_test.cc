@@ -65,8 +65,7 @@ void ExpectRefused(Set set, const std::string& message) {
 TEST(OptionList, NamesTheOptionTheValueAndTheRange) {
   EXPECT_NO_THROW(CheckOptions(WholeOptions()));
   ExpectRefused([](auto* o) { o->count = 0; }, "count = 0: expected 1..8");
-  ExpectRefused([](auto* o) { o->kind = "d"; },
-                "kind = d: expected a, b or c");
+  ExpectRefused([](auto* o) { o->kind = "d"; }, "kind = d: expected a, b or c");
   ExpectRefused([](auto* o) { o->left.near = 0; },
                 "left_near = 0: expected metres > 0");
   ExpectRefused([](auto* o) { o->right.far = 10; },

@@ -70,8 +70,7 @@ TEST(Presets, SceneThatNeedsManyNodesGetsAWiderSpacingAndSaysSo) {
   const FrameReport report = run.Next();
   ASSERT_EQ(report.surfaces.size(), 1u);
   EXPECT_LE(report.surfaces[0].nodes, 150);
-  EXPECT_GT(report.surfaces[0].node_spacing,
-            2 * options.graph.far_spacing);
+  EXPECT_GT(report.surfaces[0].node_spacing, 2 * options.graph.far_spacing);
   EXPECT_EQ(report.surfaces[0].node_spacing,
             run.fusion().surfaces().at(0)->graph().node_spacing);
 }

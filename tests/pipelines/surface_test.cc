@@ -171,7 +171,8 @@ TEST(Surface, IsWrittenWithConstantVertexOrder) {
   ApplyRigidMotion(MakeMotion({0, 0, 0}, {0.5, 0, 0}), box.mutable_graph());
   box.RecordMotions(5, true, {});
   box.RecordMotions(6, false, {});
-  WriteSurface(RunPaths(folder.Make("run")), box, {/*every=*/2, /*whole=*/false});
+  WriteSurface(RunPaths(folder.Make("run")), box,
+               {/*every=*/2, /*whole=*/false});
   const std::string at = "run/surfaces/001_teddy_bear/";
   EXPECT_FALSE(folder.Has(at + "warped/000005.ply"));
   const TriangleMesh rest = ReadPly(folder / (at + "mesh.ply"));

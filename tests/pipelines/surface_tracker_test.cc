@@ -16,9 +16,8 @@ namespace {
 
 /// The room's corner, tracked from rest to where the camera has moved.
 struct CornerTracking {
-  explicit CornerTracking(
-      const Rigid3d& motion,
-      const TrackerOptions& options = {}) {
+  explicit CornerTracking(const Rigid3d& motion,
+                          const TrackerOptions& options = {}) {
     const LiveView live = View(CornerDepth(motion));
     MakeTracker(options).Track(
         SamplesOf(View(CornerDepth(Rigid3d::Identity()))), live, 0,

@@ -65,10 +65,9 @@ inline std::vector<ModelSample> SamplesOf(const LiveView& view,
 }
 
 /// A tracker with the paper's terms and those of `terms`.
-inline SurfaceTracker MakeTracker(
-    const TrackerOptions& options = {},
-    const std::string& further_terms = "",
-    const TermRegistry& terms = BuiltinTerms()) {
+inline SurfaceTracker MakeTracker(const TrackerOptions& options = {},
+                                  const std::string& further_terms = "",
+                                  const TermRegistry& terms = BuiltinTerms()) {
   return SurfaceTracker(
       options, SolverOptions(),
       ParseEnergy("point_to_plane(loss=tukey,scale=0.03) arap(weight=8) " +

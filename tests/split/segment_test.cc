@@ -137,7 +137,8 @@ TEST_F(UncertainRegionTest, CoversWhatStandsBeforeTheBackgroundNearby) {
 TEST(UncertainOptions, NamesFieldAndBound) {
   UncertainOptions options;
   options.band = -1;
-  ExpectInputError([&] { CheckOptions(options); }, "band = -1: expected 0..100");
+  ExpectInputError([&] { CheckOptions(options); },
+                   "band = -1: expected 0..100");
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ class FlagMessages : public ::testing::Test {
 };
 
 TEST_F(FlagMessages, NameTheFlagWhereTheOptionHasAnotherName) {
-  RunRefuses("--background_voxel=-1", "--background_voxel = -1: expected 0.001");
+  RunRefuses("--background_voxel=-1",
+             "--background_voxel = -1: expected 0.001");
   RunRefuses("--object_voxel=1.5", "--object_voxel = 1.5: expected 0.001..1");
   RunRefuses("--background_voxel=0.0009",
              "--background_voxel = 9e-04: expected 0.001..1 metres, not 1");
