@@ -4,12 +4,8 @@
 #include <ceres/rotation.h>
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <vector>
 
-#include "splitfusion/lib/association/seen_nodes.h"
 #include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
@@ -32,43 +28,21 @@ struct Arap {
   static constexpr int kResiduals = 3;
   Eigen::Vector3d center_i;  ///< c_i = g_i + t_i, camera frame, metres.
   Eigen::Vector3d center_j;  ///< c_j = g_j + t_j.
-  Eigen::Vector3d edge;      ///< q = R_i (g_i - g_j).
+  Eigen::Vector3d edge;      ///< q, in the camera frame, metres.
   double sqrt_weight = 1;    ///< sqrt(e_ij)
 
-  /// The residual of edge (i, j) about the graph's current motions.
+  /// The residual of edge (i, j) about the graph's current motions. `rest`: the
+  /// edge from j to i as it is to be, in the canonical frame of node i.
+  static Arap Make(const DeformationGraph& graph, int i, int j,
+                   const Eigen::Vector3d& rest) {
+    return {graph.positions[i] + graph.motions[i].translation,
+            graph.positions[j] + graph.motions[j].translation,
+            graph.motions[i].rotation * rest, 1.0};
+  }
+
+  /// The same with the rest shape: Eq. 6.
   static Arap Make(const DeformationGraph& graph, int i, int j) {
-    const Eigen::Vector3d& g_i = graph.positions[i];
-    const Eigen::Vector3d& g_j = graph.positions[j];
-    return {g_i + graph.motions[i].translation,
-            g_j + graph.motions[j].translation,
-            graph.motions[i].rotation * (g_i - g_j), 1.0};
-  }
-
-  /// What annealing adds to the weight of the prior, `anneal` - 1 times it,
-  /// shall not unbend what is bent: it asks that the edge be as it was in the
-  /// frame before, turned with its node since,
-  ///
-  ///   q_before = R_i R_i,before^T (c_i,before - c_j,before).
-  ///
-  /// But for a constant (and without a robust loss) both energies together are
-  /// `anneal` times the prior of the mean edge
-  /// (q + (anneal - 1) q_before) / anneal, which replaces q.
-  void HoldBend(const DeformationGraph& graph,
-                const std::vector<NodeMotion>& before, double anneal, int i,
-                int j) {
-    const Eigen::Vector3d was = graph.positions[i] + before[i].translation -
-                                (graph.positions[j] + before[j].translation);
-    const Eigen::Matrix3d turn =
-        graph.motions[i].rotation * before[i].rotation.transpose();
-    edge += (anneal - 1) / anneal * (turn * was - edge);
-  }
-
-  /// A part of `share` of the prior holds the shape that the edge had when it
-  /// was last seen, DeformationGraph::seen_edges, instead of the rest shape: as
-  /// in HoldBend(), the mean edge replaces q. `k`: of the neighbours of i.
-  void HoldSeen(const DeformationGraph& graph, double share, int i,
-                std::size_t k) {
-    edge += share * (graph.motions[i].rotation * graph.seen_edges[i][k] - edge);
+    return Make(graph, i, j, graph.positions[i] - graph.positions[j]);
   }
 
   /// `twists`: {twist_i, twist_j}.
@@ -86,51 +60,22 @@ struct Arap {
   }
 };
 
-/// E_prior of Eq. 6 over all directed edges; absent on a one-node graph. While
-/// it is annealed, what it weighs more holds the bend of the frame before, if
-/// that is known.
-///
-/// Where nothing is seen there is nothing but the prior, and it would take a
-/// bent limb back to its rest shape as soon as another one hides it. Of edges
-/// of which an end is not seen, a part holds the shape that was last seen. The
-/// other part is kept, as what was last seen may be wrong.
+/// E_prior of Eq. 6: the mean over all directed edges. Absent on a one-node
+/// graph.
 class ArapTerm : public EnergyTerm {
  public:
-  /// Part of the prior of a hidden edge that holds the shape last seen.
-  static constexpr double kHeld = 0.5;
-
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
     const DeformationGraph& graph = input.graph;
-    const bool holds = KnowsSeenEdges(graph);
-    const std::vector<double> seen =
-        holds ? SeenShares(input.correspondences, graph.size())
-              : std::vector<double>(graph.size(), 1.0);
     std::vector<std::vector<int>> nodes;
     std::vector<Arap> functors;
     for (int i = 0; i < graph.size(); ++i) {
-      for (std::size_t k = 0; k < graph.neighbors[i].size(); ++k) {
-        const int j = graph.neighbors[i][k];
+      for (const int j : graph.neighbors[i]) {
         nodes.push_back({i, j});
-        Arap& arap = functors.emplace_back(Arap::Make(graph, i, j));
-        const double hidden = 1 - std::min(seen[i], seen[j]);
-        if (holds) arap.HoldSeen(graph, kHeld * hidden, i, k);
-        if (input.before == nullptr) continue;
-        arap.HoldBend(graph, *input.before, input.anneal, i, j);
+        functors.push_back(Arap::Make(graph, i, j));
       }
     }
     sink->AddNodes(nodes, functors);
-  }
-
-  bool is_prior() const override { return true; }
-
- private:
-  static bool KnowsSeenEdges(const DeformationGraph& graph) {
-    return std::equal(graph.seen_edges.begin(), graph.seen_edges.end(),
-                      graph.neighbors.begin(), graph.neighbors.end(),
-                      [](const auto& edges, const auto& neighbors) {
-                        return edges.size() == neighbors.size();
-                      });
   }
 };
 

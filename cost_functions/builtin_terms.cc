@@ -2,7 +2,9 @@
 
 #include "splitfusion/cost_functions/arap.h"
 #include "splitfusion/cost_functions/color_constancy.h"
+#include "splitfusion/cost_functions/last_seen_arap.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
+#include "splitfusion/cost_functions/temporal_arap.h"
 
 namespace splitfusion {
 
@@ -13,6 +15,10 @@ TermRegistry BuiltinTerms() {
   registry.Register("color",
                     [] { return std::make_unique<ColorConstancyTerm>(); });
   registry.Register("arap", [] { return std::make_unique<ArapTerm>(); });
+  registry.Register("temporal_arap",
+                    [] { return std::make_unique<TemporalArapTerm>(); });
+  registry.Register("last_seen_arap",
+                    [] { return std::make_unique<LastSeenArapTerm>(); });
   return registry;
 }
 

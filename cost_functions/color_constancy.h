@@ -55,13 +55,15 @@ class ColorConstancyTerm : public EnergyTerm {
     std::vector<ColorConstancy> functors;
     samples.reserve(input.correspondences.size());
     functors.reserve(input.correspondences.size());
+    double total = 0;
     for (const Correspondence& c : input.correspondences) {
       samples.push_back(&c.model);
       functors.push_back({input.camera, c.pixel.cast<double>(),
                           c.intensity_gradient.cast<double>(),
                           c.intensity_difference, std::sqrt(c.weight)});
+      total += c.weight;
     }
-    sink->AddWarpedPoints(samples, functors);
+    sink->AddWarpedPoints(samples, functors, total);
   }
 };
 

@@ -48,12 +48,14 @@ class PointToPlaneTerm : public EnergyTerm {
     std::vector<PointToPlane> functors;
     samples.reserve(input.correspondences.size());
     functors.reserve(input.correspondences.size());
+    double total = 0;
     for (const Correspondence& c : input.correspondences) {
       samples.push_back(&c.model);
       functors.push_back({c.warped_normal.cast<double>(),
                           c.target.cast<double>(), std::sqrt(c.weight)});
+      total += c.weight;
     }
-    sink->AddWarpedPoints(samples, functors);
+    sink->AddWarpedPoints(samples, functors, total);
   }
 };
 

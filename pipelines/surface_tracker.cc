@@ -66,12 +66,21 @@ TrackingStage FittedStage(const TrackingStage& stage, int min_samples,
   return fitted;
 }
 
-/// Mean confidence of the correspondences: the priors' weights follow it, so
-/// that their balance with the data is the same at any range.
-double MeanConfidence(const std::vector<Correspondence>& correspondences) {
-  double sum = 0;
-  for (const Correspondence& c : correspondences) sum += c.weight;
-  return sum / std::max<std::size_t>(1, correspondences.size());
+/// Radius of a round's trust region: it goes on from the round before, as the
+/// rounds of a stage are one minimisation with ever newer correspondences. It
+/// does not outgrow the first one: what hangs on little would swing.
+double StartRadius(const std::vector<TrackingRound>& rounds,
+                   const std::string& stage, double first) {
+  if (rounds.empty() || rounds.back().stage != stage) return first;
+  const std::vector<SolverIteration>& steps = rounds.back().solver.iterations;
+  return steps.empty() ? first
+                       : std::min(first, steps.back().trust_region_radius);
+}
+
+/// Whether the last step raised the cost and was not taken: a shorter one may
+/// lower it.
+bool WasTooLong(const SolverReport& report) {
+  return report.iterations.size() > 1 && !report.iterations.back().accepted;
 }
 
 int TotalRounds(const std::vector<TrackingStage>& stages) {
@@ -123,7 +132,8 @@ void TrackerOptions::List(OptionList* list) {
   list->Number("grazing_angle", &grazing_angle, {0, 90, true}, "degrees",
                "Between live normal and view ray; beyond, depth is not used.");
   list->Number("prior_anneal", &prior_anneal, Range::AtLeast(1), "",
-               "First factor on the priors' weights in the non-rigid rounds.")
+               "Of temporal_arap: its weight falls from this - 1 times the one "
+               "given to 0 over the non-rigid rounds.")
       .common = true;
   list->Number("settled", &settled, Range::AtLeast(0), "",
                "A stage ends when the cost changes by less, relative.");
@@ -273,7 +283,7 @@ void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
 bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
                               const LiveView& live, std::uint16_t surface,
                               const TrackingStage& stage,
-                              const std::string& name, double prior_factor,
+                              const std::string& name, double anneal,
                               const std::vector<NodeMotion>& before,
                               DeformationGraph* graph,
                               SurfaceReport* report) const {
@@ -281,7 +291,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   TrackingRound round;
   round.stage = name;
   round.stride = stage.stride;
-  round.prior_factor = prior_factor;
+  round.anneal = anneal;
   const Association association = Associate(samples, WarpField(*graph), live,
                                             surface, stage.stride, stage.gates);
   round.association = association.counts;
@@ -291,15 +301,17 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   report->associate_seconds += stopwatch.Restart();
   bool settled = true;
   if (!association.correspondences.empty()) {
-    round.solver =
-        Minimize({energy_, association.correspondences, live.camera,
-                  prior_factor * MeanConfidence(association.correspondences),
-                  &live, &before, prior_factor},
-                 solver_, graph);
+    SolverOptions solver = solver_;
+    solver.initial_radius =
+        StartRadius(report->rounds, name, solver_.initial_radius);
+    round.solver = Minimize({energy_, association.correspondences, live.camera,
+                             &live, &before, anneal},
+                            solver, graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||
-              round.solver.initial_cost - round.solver.final_cost <
-                  options_.settled * round.solver.initial_cost;
+              (!WasTooLong(round.solver) &&
+               round.solver.initial_cost - round.solver.final_cost <
+                   options_.settled * round.solver.initial_cost);
   }
   report->solve_seconds += stopwatch.Restart();
   report->rounds.push_back(std::move(round));

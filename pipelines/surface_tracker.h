@@ -28,7 +28,7 @@ struct TrackerOptions {
   double non_rigid_distance = 0.10;  ///< First gate of the non-rigid stages.
   double non_rigid_angle = 45;       ///< Of normals, degrees.
   double grazing_angle = 75;  ///< Between live normal and view ray, degrees.
-  /// The priors' weight falls from this factor to 1 over the non-rigid rounds.
+  /// EnergyInput::anneal falls from this to 1 over the non-rigid rounds.
   double prior_anneal = 8;
   /// A stage ends when the cost changes by less than this fraction.
   double settled = 2e-3;
@@ -101,7 +101,7 @@ class SurfaceTracker {
                      DeformationGraph* graph, SurfaceReport* report) const;
   bool RunRound(const std::vector<ModelSample>& samples, const LiveView& live,
                 std::uint16_t surface, const TrackingStage& stage,
-                const std::string& name, double prior_factor,
+                const std::string& name, double anneal,
                 const std::vector<NodeMotion>& before, DeformationGraph* graph,
                 SurfaceReport* report) const;
   std::string ReasonForLoss(bool must_fit, const Rigid3d& motion,

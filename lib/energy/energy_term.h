@@ -31,7 +31,8 @@ struct EnergyInput {
   /// this frame: where it was found. Null where a problem is solved without
   /// history.
   const std::vector<NodeMotion>* before = nullptr;
-  /// By how much annealing multiplies the weight of priors, >= 1.
+  /// Falls from TrackerOptions::prior_anneal to 1 over the rounds of a frame,
+  /// for terms that begin stiff; nothing is scaled by it but by a term itself.
   double anneal = 1;
 };
 
@@ -39,7 +40,8 @@ struct EnergyInput {
 ///
 /// A term adds residual vectors in metres (or units that compare with 1 cm) to
 /// the sink and names graph nodes, never parameter memory. The sink scales
-/// them: E_term = weight * (1/N) * sum of rho(|r|^2 / s^2), s = 1 cm. A new
+/// them: E_term = weight * (1/N) * sum of rho(|r|^2 / s^2), s = 1 cm, N = the
+/// number of residual vectors or the sum of the weights they carry. A new
 /// term is one header with a functor and this class, and one line of
 /// registration; see examples/ and CONTRIBUTING.md.
 class EnergyTerm {
@@ -49,9 +51,6 @@ class EnergyTerm {
   /// Adds the residuals of all its points, nodes or edges.
   virtual void AddResiduals(const EnergyInput& input,
                             ResidualSink* sink) const = 0;
-
-  /// Whether annealing multiplies the weight of this term (priors).
-  virtual bool is_prior() const { return false; }
 };
 
 }  // namespace splitfusion

@@ -21,8 +21,7 @@ void ResidualSink::CheckTuples(const std::vector<std::vector<int>>& nodes) {
 ResidualScaling ResidualSink::Scaling() const {
   ResidualScaling scaling;
   scaling.residual_scale = 1 / kResidualUnit;
-  scaling.weight_root =
-      std::sqrt(2 * weight_factor_ * options_.weight / residual_vectors_);
+  scaling.weight_root = std::sqrt(2 * options_.weight / total_);
   if (options_.loss != LossKind::kTrivial) {
     scaling.loss = MakeLoss(options_.loss, options_.scale / kResidualUnit);
   }

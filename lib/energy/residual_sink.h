@@ -45,19 +45,21 @@ struct TermResiduals {
 class ResidualSink {
  public:
   /// Residuals are scaled so that their cost sums to
-  /// weight_factor * options.weight / N * sum of rho(|r|^2 / s^2). Terms of one
-  /// problem share `cache`.
-  ResidualSink(const TermOptions& options, double weight_factor,
-               WarpedPointsCache* cache)
-      : options_(options), weight_factor_(weight_factor), cache_(cache) {}
+  /// options.weight / N * sum of rho(|r|^2 / s^2). Terms of one problem share
+  /// `cache`.
+  ResidualSink(const TermOptions& options, WarpedPointsCache* cache)
+      : options_(options), cache_(cache) {}
 
   /// Adds one residual vector per model sample; `functors[i]` sees the warped
   /// point of `samples[i]`. PointFunctor: kResiduals, and a template
-  /// operator()(const T* warped_point, T* residual) in metres. Call it once.
+  /// operator()(const T* warped_point, T* residual) in metres. `total`: N, the
+  /// sum of the weights that the functors carry; 0: every one weighs 1. Call it
+  /// once.
   template <typename PointFunctor>
   void AddWarpedPoints(const std::vector<const ModelSample*>& samples,
-                       const std::vector<PointFunctor>& functors) {
-    residual_vectors_ = static_cast<int>(samples.size());
+                       const std::vector<PointFunctor>& functors,
+                       double total = 0) {
+    Count(samples.size(), total);
     if (samples.empty()) return;
     residuals_.points = cache_->Get(samples);
     std::vector<PointFunctor> ordered;
@@ -71,20 +73,20 @@ class ResidualSink {
 
   /// Adds one residual vector per tuple of different nodes; `functors[i]` sees
   /// the twists of `nodes[i]` as (T const* const* twists, T* residual), in
-  /// metres. Plain autodiff. Call it once.
+  /// metres. Plain autodiff. `total` as above. Call it once.
   ///
   /// @throw InputError if a tuple has a node twice.
   template <typename Functor>
   void AddNodes(const std::vector<std::vector<int>>& nodes,
-                const std::vector<Functor>& functors) {
-    residual_vectors_ = static_cast<int>(nodes.size());
+                const std::vector<Functor>& functors, double total = 0) {
+    Count(nodes.size(), total);
     if (nodes.empty()) return;
     CheckTuples(nodes);
     residuals_.of_nodes =
         std::make_shared<NodeResidualsOf<Functor>>(nodes, functors, Scaling());
   }
 
-  /// N of the normalisation.
+  /// Number of residual vectors.
   int residual_vectors() const { return residual_vectors_; }
   /// What has been added.
   const TermResiduals& residuals() const { return residuals_; }
@@ -92,13 +94,18 @@ class ResidualSink {
  private:
   static void CheckTuples(const std::vector<std::vector<int>>& nodes);
 
+  void Count(std::size_t vectors, double total) {
+    residual_vectors_ = static_cast<int>(vectors);
+    total_ = total > 0 ? total : static_cast<double>(vectors);
+  }
+
   /// Its weight turns Ceres' 1/2 sum into the term's energy.
   ResidualScaling Scaling() const;
 
   const TermOptions& options_;
-  double weight_factor_;
   WarpedPointsCache* cache_;
   int residual_vectors_ = 0;
+  double total_ = 0;  // N of the normalisation.
   TermResiduals residuals_;
 };
 

@@ -59,13 +59,11 @@ struct SurfaceProblem {
   /// Pairs of model and live points of the surface.
   const std::vector<Correspondence>& correspondences;
   const PinholeCamera& camera;  ///< Live camera.
-  double prior_factor = 1;      ///< Multiplies the priors' weights.
   /// For terms that ask for them, see EnergyInput; may be null.
   const LiveView* live = nullptr;
   /// As `live`.
   const std::vector<NodeMotion>* before = nullptr;
-  /// Part of `prior_factor` that is annealing; for terms that ask for it, it
-  /// weighs nothing by itself.
+  /// As EnergyInput::anneal.
   double anneal = 1;
 };
 

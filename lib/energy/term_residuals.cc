@@ -12,8 +12,7 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
   std::vector<ProblemTerm> terms;
   WarpedPointsCache cache;
   for (const WeightedTerm& weighted : problem.energy) {
-    const double factor = weighted.term->is_prior() ? problem.prior_factor : 1;
-    ResidualSink sink(weighted.options, factor, &cache);
+    ResidualSink sink(weighted.options, &cache);
     weighted.term->AddResiduals(input, &sink);
     ProblemTerm term;
     term.cost.term = weighted.options.name;

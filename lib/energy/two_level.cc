@@ -14,8 +14,8 @@ namespace {
 /// in the mean of a sequence), with smaller ones the factorisation dearer.
 constexpr int kPatchNodes = 12;
 
-/// What the diagonal of P^T A P is raised by, relative to that of A: a part that
-/// nothing holds has no stiffness there at all but for the damping.
+/// What the diagonal of P^T A P is raised by, relative to that of A: a part
+/// that nothing holds has no stiffness there at all but for the damping.
 constexpr double kRaise = 1e-9;
 
 /// By node, those that it shares blocks with: of node i those from begin[i] to

@@ -15,7 +15,7 @@ namespace splitfusion {
 struct TrackingRound {
   std::string stage;              ///< "rigid" or "non_rigid".
   int stride = 1;                 ///< Image resolution: every stride-th pixel.
-  double prior_factor = 1;        ///< Annealing factor on the prior's weight.
+  double anneal = 1;              ///< EnergyInput::anneal.
   AssociationCounts association;  ///< What became of the model points.
   SolverReport solver;            ///< The minimisation after it.
 };

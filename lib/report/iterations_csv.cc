@@ -5,7 +5,7 @@
 namespace splitfusion {
 
 void WriteIterationsHeader(std::ostream& out) {
-  out << "frame,surface,round,stage,stride,prior_factor,iteration,accepted,"
+  out << "frame,surface,round,stage,stride,anneal,iteration,accepted,"
          "cost,cost_change,gradient_max_norm,step_norm,trust_region_radius,"
          "linear_solver_iterations,linear_residual,seconds\n";
 }
@@ -17,7 +17,7 @@ void WriteIterations(std::ostream& out, const FrameReport& report) {
       for (const SolverIteration& it : round.solver.iterations) {
         CsvRow row;
         row.Add(report.frame).Add(surface.id).Add(number);
-        row.Add(round.stage).Add(round.stride).Add(round.prior_factor);
+        row.Add(round.stage).Add(round.stride).Add(round.anneal);
         row.Add(it.iteration).Add(it.accepted ? 1 : 0).Add(it.cost);
         row.Add(it.cost_change).Add(it.gradient_max_norm).Add(it.step_norm);
         row.Add(it.trust_region_radius).Add(it.linear_solver_iterations);

@@ -50,7 +50,7 @@ Json ToJson(const SolverReport& solver) {
 Json ToJson(const TrackingRound& round) {
   return {{"stage", round.stage},
           {"stride", round.stride},
-          {"prior_factor", round.prior_factor},
+          {"anneal", round.anneal},
           {"association", ToJson(round.association)},
           {"solver", ToJson(round.solver)}};
 }

@@ -81,14 +81,16 @@ TEST(ColorConstancyTerm, TakesTheCorrespondencesAndTheCamera) {
   c.pixel = {90, 50};
   c.intensity_difference = 0.2f;
   c.intensity_gradient = {0.1f, 0};
-  c.weight = 0.25f;
+  c.weight = 0.75f;
+  Correspondence far = c;
+  far.intensity_difference = 0;
+  far.weight = 0.25f;
   const TermOptions options{"color", 1, LossKind::kTrivial, 0.01};
   const AddedResiduals added =
-      ResidualsOf(ColorConstancyTerm(), {graph, {c, c}, camera}, options);
+      ResidualsOf(ColorConstancyTerm(), {graph, {c, far}, camera}, options);
   EXPECT_EQ(added.residual_vectors, 2);
-  // 0.2 in grey value count like 1 cm, of which half by the confidence.
-  EXPECT_NEAR(EnergyOf(graph, added.residuals), 0.25, 1e-5);
-  EXPECT_FALSE(ColorConstancyTerm().is_prior());
+  // 0.2 in grey value count like 1 cm; a mean weighted by the confidence.
+  EXPECT_NEAR(EnergyOf(graph, added.residuals), 0.75, 1e-5);
 }
 
 }  // namespace

@@ -123,21 +123,25 @@ TEST(PointToPlane, GradientsMatchNumeric) {
   }
 }
 
-TEST(PointToPlaneTerm, AddsOneResidualACorrespondenceWithItsConfidence) {
+TEST(PointToPlaneTerm, IsTheMeanWeightedByTheConfidence) {
   const TriangleMesh mesh = PlateMesh(0.1, 0.1, 0.02, 1);
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   auto correspondences = PerfectAssociation(
       mesh, graph, [](const Eigen::Vector3d& p) -> Eigen::Vector3d {
         return p + Eigen::Vector3d(0.3, 0, 0.02);
       });
-  for (Correspondence& c : correspondences) c.weight = 0.25;
+  for (std::size_t i = 0; i < correspondences.size(); ++i) {
+    correspondences[i].weight = i == 0 ? 0.5f : 0.25f;
+  }
+  correspondences[0].target = correspondences[0].model.point;
   const TermOptions options{"point_to_plane", 1, LossKind::kTrivial, 0.01};
   const AddedResiduals added = ResidualsOf(
       PointToPlaneTerm(), {graph, correspondences, PinholeCamera()}, options);
   EXPECT_EQ(added.residual_vectors, static_cast<int>(correspondences.size()));
-  // 2 cm off, in cm: 4, of which the confidence leaves a quarter.
-  EXPECT_NEAR(EnergyOf(graph, added.residuals), 1, 1e-4);
-  EXPECT_FALSE(PointToPlaneTerm().is_prior());
+  // 2 cm off, in cm: 4; the first one, of twice the weight, is not off.
+  const double others = 0.25 * (correspondences.size() - 1.0);
+  EXPECT_NEAR(EnergyOf(graph, added.residuals), 4 * others / (0.5 + others),
+              1e-4);
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ std::vector<ResidualBlock> TwoPoints(const DeformationGraph& graph,
                                      const ModelSample& sample,
                                      const TermOptions& options) {
   WarpedPointsCache cache;
-  ResidualSink sink(options, 1, &cache);
+  ResidualSink sink(options, &cache);
   sink.AddWarpedPoints(
       {&sample, &sample},
       std::vector<PointToPoint>{{{0.1, 0.1, 1.1}}, {{0.2, 0.1, 0.9}}});

@@ -41,8 +41,8 @@ ModelSample SampleAt(float z) {
 }
 
 /// Energy of points that are so many metres off the plane z = 1.
-double PointEnergy(const TermOptions& options, double factor,
-                   const std::vector<double>& errors) {
+double PointEnergy(const TermOptions& options,
+                   const std::vector<double>& errors, double total = 0) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   std::vector<ModelSample> samples;
   std::vector<DepthError> functors;
@@ -53,8 +53,8 @@ double PointEnergy(const TermOptions& options, double factor,
   std::vector<const ModelSample*> pointers;
   for (const ModelSample& sample : samples) pointers.push_back(&sample);
   WarpedPointsCache cache;
-  ResidualSink sink(options, factor, &cache);
-  sink.AddWarpedPoints(pointers, functors);
+  ResidualSink sink(options, &cache);
+  sink.AddWarpedPoints(pointers, functors, total);
   EXPECT_EQ(sink.residual_vectors(), static_cast<int>(errors.size()));
   return EnergyOf(graph, sink.residuals());
 }
@@ -62,41 +62,42 @@ double PointEnergy(const TermOptions& options, double factor,
 TEST(ResidualSink, EnergyIsWeightTimesTheMeanInSquaredCentimetres) {
   // weight / N * sum |r|^2 / s^2 = 3 / 2 * (1 + 4).
   const TermOptions options{"", 3, LossKind::kTrivial, 0.01};
-  EXPECT_NEAR(PointEnergy(options, 1, {0.01, -0.02}), 7.5, 1e-9);
+  EXPECT_NEAR(PointEnergy(options, {0.01, -0.02}), 7.5, 1e-9);
 }
 
 TEST(ResidualSink, LossesSeeCentimetresToo) {
   // Huber at 1 cm: 1 and 2 * 2 - 1 = 3.
   const TermOptions huber{"", 1, LossKind::kHuber, 0.01};
-  EXPECT_NEAR(PointEnergy(huber, 1, {0.01, -0.02}), 2, 1e-9);
+  EXPECT_NEAR(PointEnergy(huber, {0.01, -0.02}), 2, 1e-9);
   // Tukey at 2 cm is flat beyond: 4 / 3 in cm^2.
   const TermOptions tukey{"", 1, LossKind::kTukey, 0.02};
-  EXPECT_NEAR(PointEnergy(tukey, 1, {0.02, 0.5}), 4.0 / 3, 1e-9);
+  EXPECT_NEAR(PointEnergy(tukey, {0.02, 0.5}), 4.0 / 3, 1e-9);
 }
 
 TEST(ResidualSink, AWeightMeansTheSameForAnyNumberOfPoints) {
   const TermOptions options{"", 2, LossKind::kCauchy, 0.01};
-  const double once = PointEnergy(options, 1, {0.01, 0.03});
+  const double once = PointEnergy(options, {0.01, 0.03});
   std::vector<double> many;
   for (int i = 0; i < 1000; ++i) many.insert(many.end(), {0.01, 0.03});
-  EXPECT_NEAR(PointEnergy(options, 1, many), once, 1e-9 * once);
+  EXPECT_NEAR(PointEnergy(options, many), once, 1e-9 * once);
 }
 
-TEST(ResidualSink, AnnealingMultipliesTheWeight) {
+TEST(ResidualSink, WeightsThatResidualsCarryAreNormalisedByTheirSum) {
   const TermOptions options{"", 2, LossKind::kHuber, 0.01};
-  EXPECT_NEAR(PointEnergy(options, 8, {0.05}),
-              8 * PointEnergy(options, 1, {0.05}), 1e-9);
+  // Two of weight 1/4 each: the mean is that of two of weight 1.
+  EXPECT_NEAR(PointEnergy(options, {0.005, 0.005}, 0.5),
+              4 * PointEnergy(options, {0.005, 0.005}), 1e-9);
 }
 
 TEST(ResidualSink, NodeResidualsAreNormalisedAlike) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   const TermOptions options{"", 6, LossKind::kHuber, 0.05};
   WarpedPointsCache cache;
-  ResidualSink sink(options, 0.5, &cache);
+  ResidualSink sink(options, &cache);
   // |(3, 4)| = 5 cm is an inlier still: 25; 10 cm: 2 * 5 * 10 - 25 = 75.
   sink.AddNodes({{0}, {0}}, std::vector<Constant>{{0.03, 0.04}, {0.06, 0.08}});
   EXPECT_EQ(sink.residual_vectors(), 2);
-  EXPECT_NEAR(EnergyOf(graph, sink.residuals()), 0.5 * 6 / 2 * (25 + 75), 1e-9);
+  EXPECT_NEAR(EnergyOf(graph, sink.residuals()), 6.0 / 2 * (25 + 75), 1e-9);
 }
 
 TEST(ResidualSink, PointsOfTheSameNodesShareABlock) {
@@ -114,7 +115,7 @@ TEST(ResidualSink, PointsOfTheSameNodesShareABlock) {
   for (const ModelSample& sample : samples) pointers.push_back(&sample);
   WarpedPointsCache cache;
   const TermOptions options;
-  ResidualSink sink(options, 1, &cache);
+  ResidualSink sink(options, &cache);
   sink.AddWarpedPoints(pointers, std::vector<DepthError>(1200, {0.9}));
   // Two sets of 600 points, at most 512 in a block.
   const auto blocks = MakeCeresBlocks(graph, sink.residuals());
@@ -122,7 +123,7 @@ TEST(ResidualSink, PointsOfTheSameNodesShareABlock) {
   for (const ResidualBlock& block : blocks) EXPECT_EQ(block.nodes[1], 2);
   EXPECT_NEAR(EnergyOf(graph, sink.residuals()), 100, 1e-6);
   // Another term over the same samples takes the points as they are.
-  ResidualSink other(options, 1, &cache);
+  ResidualSink other(options, &cache);
   other.AddWarpedPoints(pointers, std::vector<DepthError>(1200, {0.8}));
   EXPECT_EQ(other.residuals().points, sink.residuals().points);
   pointers.pop_back();
@@ -132,7 +133,7 @@ TEST(ResidualSink, PointsOfTheSameNodesShareABlock) {
 TEST(ResidualSink, NothingAddedIsNothing) {
   const TermOptions options;
   WarpedPointsCache cache;
-  ResidualSink sink(options, 1, &cache);
+  ResidualSink sink(options, &cache);
   sink.AddWarpedPoints({}, std::vector<DepthError>());
   sink.AddNodes({}, std::vector<Constant>());
   EXPECT_EQ(sink.residuals().points, nullptr);
@@ -143,7 +144,7 @@ TEST(ResidualSink, NothingAddedIsNothing) {
 TEST(ResidualSink, ATupleMustNotRepeatANode) {
   const TermOptions options;
   WarpedPointsCache cache;
-  ResidualSink sink(options, 1, &cache);
+  ResidualSink sink(options, &cache);
   ExpectInputError(
       [&] {
         sink.AddNodes({{0, 1}, {2, 2}}, std::vector<Constant>(2));

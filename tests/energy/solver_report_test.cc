@@ -33,11 +33,10 @@ class BentPlateProblem : public ::testing::TestWithParam<const char*> {
   }
 
   /// Minimises with the solver under test.
-  SolverReport Run(SolverOptions options, DeformationGraph* graph,
-                   double prior_factor = 1) const {
+  SolverReport Run(SolverOptions options, DeformationGraph* graph) const {
     options.solver = GetParam();
-    return Minimize({energy_, correspondences_, PinholeCamera(), prior_factor},
-                    options, graph);
+    return Minimize({energy_, correspondences_, PinholeCamera()}, options,
+                    graph);
   }
 
   const TriangleMesh mesh_ = PlateMesh(0.2, 0.1, 0.02, 1);
@@ -71,16 +70,6 @@ TEST_P(BentPlateProblem, ReportAccountsForTheCost) {
     EXPECT_GT(iteration.trust_region_radius, 0);
   }
   EXPECT_TRUE(report.full_report.empty());
-}
-
-TEST_P(BentPlateProblem, AnnealingCountsForThePriorAlone) {
-  DeformationGraph graph = start_;
-  const SolverReport plain = Run(SolverOptions(), &graph);
-  graph = start_;
-  const SolverReport annealed = Run(SolverOptions(), &graph, 8);
-  EXPECT_NEAR(annealed.terms[0].initial, plain.terms[0].initial, 1e-12);
-  EXPECT_NEAR(annealed.terms[1].initial, 8 * plain.terms[1].initial,
-              1e-9 * annealed.terms[1].initial);
 }
 
 TEST_P(BentPlateProblem, AStepFromTheResultStartsAtItsCost) {

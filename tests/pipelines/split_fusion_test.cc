@@ -62,7 +62,7 @@ void ExpectSoundReport(const FrameReport& report) {
     EXPECT_FALSE(surface.label.empty());
     for (const TrackingRound& round : surface.rounds) {
       EXPECT_TRUE(round.stage == "rigid" || round.stage == "non_rigid");
-      EXPECT_GE(round.prior_factor, 1);
+      EXPECT_GE(round.anneal, 1);
       const AssociationCounts& c = round.association;
       EXPECT_EQ(c.accepted + c.outside_image + c.no_depth + c.occluded +
                     c.other_surface + c.depth_edge + c.distance +

@@ -71,6 +71,51 @@ TEST(TermInput, ATermMayHoldARigidSurfaceWhereItWas) {
   EXPECT_LT(moved(MakeSluggishTracker()), 0.003);
 }
 
+/// A valley with flat walls, whose Gauss-Newton steps shoot over the bottom.
+///
+///   r = atan(kSteepness (t_x + tau_x - kBottom)), camera frame
+struct Valley {
+  static constexpr int kResiduals = 1;
+  static constexpr double kSteepness = 100, kBottom = 0.05;
+  double x;  ///< t_x.
+  template <typename T>
+  bool operator()(T const* const* twists, T* residual) const {
+    residual[0] = atan(T(kSteepness) * (T(x - kBottom) + twists[0][3]));
+    return true;
+  }
+};
+
+class ValleyTerm : public EnergyTerm {
+ public:
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    sink->AddNodes(
+        {{0}}, std::vector<Valley>{{input.graph.motions[0].translation.x()}});
+  }
+};
+
+TEST(TermInput, TheTrustRegionOfARoundGoesOnFromTheRoundBefore) {
+  TermRegistry terms = BuiltinTerms();
+  terms.Register("valley", [] { return std::make_unique<ValleyTerm>(); });
+  const LiveView live = View(CornerDepth(Rigid3d::Identity()));
+  DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  SurfaceReport report;
+  MakeTracker(TrackerOptions(), "valley(weight=1)", terms)
+      .Track(SamplesOf(live), live, 0, Rigid3d::Identity(), &graph, &report);
+  const double first = SolverOptions().initial_radius;
+  ASSERT_GT(report.rounds.size(), 1u);
+  double radius = first;
+  bool shrank = false;
+  for (const TrackingRound& round : report.rounds) {
+    const std::vector<SolverIteration>& steps = round.solver.iterations;
+    ASSERT_FALSE(steps.empty());
+    EXPECT_EQ(steps.front().trust_region_radius, std::min(first, radius));
+    radius = steps.back().trust_region_radius;
+    shrank = shrank || radius < first;
+  }
+  EXPECT_TRUE(shrank) << "no step was too long";
+}
+
 /// Adds nothing; notes the annealing that it is told.
 class AnnealNotes : public EnergyTerm {
  public:

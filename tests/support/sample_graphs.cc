@@ -5,6 +5,7 @@
 #include <random>
 
 #include "splitfusion/lib/deformation/graph_growth.h"
+#include "support/sample_meshes.h"
 
 namespace splitfusion {
 namespace {
@@ -35,6 +36,10 @@ DeformationGraph CoverWithNodes(const TriangleMesh& mesh, double spacing) {
   graph.node_spacing = spacing;
   GrowGraph(mesh, GraphOptions(), &graph, nullptr);
   return graph;
+}
+
+DeformationGraph PlateGraph() {
+  return CoverWithNodes(PlateMesh(0.2, 0.1, 0.01, 1), 0.04);
 }
 
 void Shake(double size, std::uint32_t seed, DeformationGraph* graph) {

@@ -18,6 +18,9 @@ Rigid3d MakeMotion(const Eigen::Vector3d& omega,
 /// eight edges a node.
 DeformationGraph CoverWithNodes(const TriangleMesh& mesh, double spacing);
 
+/// The same over a plate of 20 by 10 cm at 1 m, with a node every 4 cm.
+DeformationGraph PlateGraph();
+
 /// Turns and moves every node by up to `size` (radians and metres), at random.
 void Shake(double size, std::uint32_t seed, DeformationGraph* graph);
 

@@ -44,7 +44,7 @@ SurfaceReport SampleSurface(int id, const std::string& label,
   TrackingRound round;
   round.stage = "rigid";
   round.stride = 2;
-  round.prior_factor = 8;
+  round.anneal = 8;
   round.association.model_points = 1200;
   round.association.accepted = 1000;
   round.association.distance = 200;

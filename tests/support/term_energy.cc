@@ -8,7 +8,7 @@ namespace splitfusion {
 AddedResiduals ResidualsOf(const EnergyTerm& term, const EnergyInput& input,
                            const TermOptions& options) {
   WarpedPointsCache cache;
-  ResidualSink sink(options, 1, &cache);
+  ResidualSink sink(options, &cache);
   term.AddResiduals(input, &sink);
   return {sink.residuals(), sink.residual_vectors()};
 }

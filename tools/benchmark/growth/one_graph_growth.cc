@@ -32,7 +32,7 @@ double SystemBytes(const SymmetricBlockMatrix& matrix) {
 SurfaceProblem ProblemOf(const PairedSurface& part, const Energy& energy,
                          const LiveView& live) {
   const auto& motions = part.surface->graph().motions;
-  return {energy, part.pairs, live.camera, 1, &live, &motions};
+  return {energy, part.pairs, live.camera, &live, &motions};
 }
 
 /// Measures one model; all surfaces one after the other.
