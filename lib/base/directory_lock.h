@@ -18,7 +18,8 @@ struct LockHolder {
   /// that got the same number later is told apart.
   long long process_start = 0;
 
-  /// "process 4711 on host", for messages.
+  /// "process 4711 on host", for messages; "a lock without a name" if it is
+  /// unknown, as of an empty file.
   std::string ToString() const;
 };
 

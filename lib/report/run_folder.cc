@@ -150,8 +150,8 @@ void RunFolder::Lock() {
   LockHolder holder;
   lock_ = DirectoryLock::TryAcquire(paths_.Lock(), &holder);
   if (lock_) return;
-  throw InputError(root_ + ": " + holder.ToString() +
-                   " works on it: expected a folder of one's own");
+  throw InputError(root_ + ": is held by " + holder.ToString() +
+                   ": expected a folder of one's own");
 }
 
 void RunFolder::CheckHeld() const {
