@@ -220,7 +220,12 @@ void CheckTables(const Experiment& experiment,
   }
   for (const Task& task : PlanForeign(tasks, foreign)) tasks.push_back(task);
   if (experiment.baseline.empty()) return;
-  CheckBaseline(PlannedTable(tasks), experiment.baseline);
+  try {
+    CheckBaseline(PlannedTable(tasks), experiment.baseline);
+  } catch (const InputError& error) {
+    if (!FLAGS_baseline.empty()) throw;
+    throw InputError(FLAGS_experiment + ": " + error.what());
+  }
 }
 
 int RunExperiment() {

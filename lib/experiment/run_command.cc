@@ -136,9 +136,12 @@ void RunCommand::CheckOptions(const std::vector<Task>& tasks) {
     if (task.repeat > 0 || planned_.count(options) > 0) continue;
     try {
       planned_[options] = WithoutInput(AskPlain(task).parts);
-    } catch (const InputError&) {
+    } catch (const InputError& error) {
       // A sequence that cannot be read is the failure of its own runs.
-      if (CanBeRead(task)) throw;
+      if (CanBeRead(task)) {
+        throw InputError("options \"" + SettingsText(task.settings) +
+                         "\": " + error.what());
+      }
     }
   }
 }

@@ -39,7 +39,8 @@ class RunCommand {
   /// Whether sf_run takes the options of all tasks, each set of options asked
   /// once, on the first sequence that can be read.
   ///
-  /// @throw InputError with the last line of sf_run if it does not.
+  /// @throw InputError with the options and the last line of sf_run if it does
+  ///     not.
   void CheckOptions(const std::vector<Task>& tasks);
 
   /// How the options and the program of a finished run differ from what they

@@ -52,7 +52,9 @@ void CheckEvaluateFlags(const std::string& program,
         EvaluateCommand(program, task, folder.path());
     command.emplace_back("--check_only");
     const ChildResult child = RunChild(command, folder.path() + "/check");
-    if (child.exit_code != 0) throw InputError(child.LastLine());
+    if (child.exit_code == 0) continue;
+    throw InputError("evaluate \"" + SettingsText(task.evaluate) +
+                     "\": " + child.LastLine());
   }
 }
 

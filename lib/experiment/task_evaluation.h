@@ -20,7 +20,8 @@ std::vector<std::string> EvaluateCommand(const std::string& program,
 
 /// Whether sf_evaluate takes the flags of all tasks that have a ground truth.
 ///
-/// @throw InputError with the last line of sf_evaluate if it does not.
+/// @throw InputError with the flags and the last line of sf_evaluate if it does
+///     not.
 void CheckEvaluateFlags(const std::string& program,
                         const std::vector<Task>& tasks);
 

@@ -156,7 +156,8 @@ TEST_F(SweepTest, ARunThatCannotBeJudgedSaysSo) {
 TEST_F(SweepTest, UnknownKeysAreRefusedBeforeAnythingRuns) {
   AddSequence("room");
   experiment_.grid = ParseGrid("x=1,2; bogus=1", "grid");
-  ExpectInputError([&] { Sweep(); }, "unknown flag bogus");
+  ExpectInputError([&] { Sweep(); },
+                   "options \"x=1; bogus=1\": stub: unknown flag bogus");
   EXPECT_EQ(Starts("room"), 0);
   EXPECT_FALSE(folder_.Has("out"));
 }
@@ -225,7 +226,8 @@ TEST_F(SweepTest, AFailureWithoutAWordHasAReason) {
 TEST_F(SweepTest, FlagsOfTheEvaluationAreCheckedBeforeAnythingRuns) {
   AddSequence("room", "true");
   experiment_.evaluate.Set("nope", "1");
-  ExpectInputError([&] { Sweep(); }, "unknown flag nope");
+  ExpectInputError([&] { Sweep(); },
+                   "evaluate \"nope=1\": stub: unknown flag nope");
   ExpectInputError([&] { DryRun(experiment_, options_); }, "nope");
   EXPECT_EQ(Starts("room"), 0);
 }

@@ -167,6 +167,10 @@ TEST_F(SfBatch, RefusesBeforeTheFirstRunWhatTheTablesWouldRefuse) {
       EXPECT_FALSE(folder_.Has("out")) << flag;
     }
   }
+  const std::string file = folder_.Write("e.json", R"({"baseline": "x=3"})");
+  EXPECT_THAT(
+      RunProgram("sf_batch", arguments + " --experiment=" + file).errors,
+      HasSubstr("e.json: baseline = x=3"));
   EXPECT_EQ(RunProgram("sf_batch", arguments + " --baseline=x=2").exit_code, 0);
   const std::string table = folder_.Read("out/results.csv");
   EXPECT_EQ(RunProgram("sf_batch",
@@ -299,6 +303,17 @@ TEST_F(SfBatch, SweepsTheRealProgram) {
                                  " --grid=terms.arap.wieght=4,8");
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.errors, HasSubstr("wieght"));
+  const std::filesystem::path task =
+      std::filesystem::directory_iterator(folder_ / "out/tasks")->path();
+  std::filesystem::remove(task / "run/evaluation.json");
+  RunProgram("sf_batch", arguments);
+  EXPECT_THAT(folder_.Read("out/progress.log"),
+              HasSubstr("kept, evaluated again: evaluation.json: missing"));
+  EXPECT_EQ(folder_.Read("out/results.csv"), csv);
+  std::filesystem::resize_file(task / "run/trajectory.txt", 10);
+  EXPECT_THAT(
+      RunProgram("sf_batch", "status --output=" + (folder_ / "out")).output,
+      HasSubstr("damaged: trajectory.txt was changed"));
   for (const std::string option :
        {"pictures_every", "warped_every", "threads", "checkpoint_every"}) {
     const ProgramResult refused =
