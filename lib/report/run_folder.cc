@@ -176,10 +176,9 @@ void RunFolder::Decide(const RunFolderOptions& options) {
                      "expected a new or empty folder, or a run to overwrite");
   }
   const bool can_resume = options.resume && begun && begun->IsSame(identity_);
-  const bool finished = published &&
-                        published->status == RunStatus::kComplete &&
-                        published->IsSame(identity_) &&
-                        FindMissing(*published, root_).empty();
+  const bool finished =
+      published && published->status == RunStatus::kComplete &&
+      published->IsSame(identity_) && FindMissing(*published, root_).empty();
   if (finished && (!options.overwrite || options.keep_same)) {
     marker_ = *published;
     start_ = RunStart::kFinished;

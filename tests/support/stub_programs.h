@@ -11,8 +11,8 @@ namespace splitfusion {
 /// Shell script that takes the flags of sf_run and writes what it writes, with
 /// figures that its options decide. It refuses a flag `bogus`. Names of
 /// sequences say more: `bad` fails, `mute` does so without a word, `resumed`
-/// says that it went on from a checkpoint, `slow` takes a moment, `endless` runs until
-/// SIGINT or, like `busy`, `greedy` and `still`, until it is killed.
+/// says that it went on from a checkpoint, `slow` takes a moment, `endless`
+/// runs until SIGINT or, like `busy`, `greedy` and `still`, until it is killed.
 inline constexpr const char* kStubRun = R"(#!/bin/sh
 object=0.005; background=0.01; parts=; keep=; ask=; resumed=
 escaped() { printf '%s' "$1" | sed 's/"/\\"/g'; }
