@@ -1,11 +1,8 @@
 // Runs sf_run and sf_evaluate over sequences and options, and tabulates them.
 
 #include <gflags/gflags.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -14,11 +11,11 @@
 #include <thread>
 #include <vector>
 
+#include "batch_terminal.h"
 #include "interruption.h"
-#include "progress_line.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/experiment/foreign_results.h"
+#include "splitfusion/lib/experiment/outdated_runs.h"
 #include "splitfusion/lib/experiment/printed_table.h"
 #include "splitfusion/lib/experiment/result_files.h"
 #include "splitfusion/lib/experiment/result_statistics.h"
@@ -149,75 +146,51 @@ SweepOptions SweepOptionsFromFlags(const Experiment& experiment) {
   return options;
 }
 
-/// Of the terminal: COLUMNS, or what it says, or 80.
-std::size_t Width() {
-  constexpr std::size_t kDefault = 80, kLeast = 20;
-  if (const char* columns = std::getenv("COLUMNS")) {
-    const long width = std::strtol(columns, nullptr, 10);
-    if (width > 0) return std::max(kLeast, static_cast<std::size_t>(width));
-  }
-  winsize size = {};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
-    return std::max<std::size_t>(kLeast, size.ws_col);
-  }
-  return kDefault;
-}
-
-/// Shows the progress as one line on a terminal, and otherwise as lines, not
-/// more often than every few seconds.
-class ProgressLines {
- public:
-  void Show(const SweepProgress& progress) {
-    constexpr double kSecondsBetween = 5;
-    if (isatty(STDERR_FILENO)) {
-      line_.Show(progress.done, progress.total,
-                 "runs, " + progress.last.record.task.name,
-                 progress.seconds_left);
-      return;
-    }
-    const bool due = progress.done == progress.total || !said_ ||
-                     since_.Seconds() > kSecondsBetween;
-    if (!due) return;
-    std::cerr << progress.ToString() << '\n';
-    since_.Restart();
-    said_ = true;
-  }
-
-  /// Ends the line of a terminal.
-  void End() { line_.End(); }
-
- private:
-  ProgressLine line_;
-  Stopwatch since_;
-  bool said_ = false;
-};
-
 Stop WantedStop() {
   if (InterruptedTwice()) return Stop::kAtOnce;
   return Interrupted() ? Stop::kWhenReady : Stop::kNo;
 }
 
-/// Writes all tables and prints them.
-void Collect(const std::string& baseline_flag) {
+/// Whether there are outdated runs.
+bool WarnOfOutdated(const ResultTable& table) {
+  const std::string text = OutdatedText(table);
+  if (!text.empty()) std::cerr << "sf_batch: warning: " << text << '\n';
+  return !text.empty();
+}
+
+void AddRows(const ResultTable& table) {
+  if (FLAGS_rows_csv.empty()) return;
+  if (!std::filesystem::exists(FLAGS_rows_csv)) {
+    std::cerr << "sf_batch: " << FLAGS_rows_csv << ": is a new file\n";
+  }
+  AddToRowFile(table, FLAGS_rows_csv);
+}
+
+/// Writes all tables and prints them. False if runs had to be left out that
+/// must not stand beside the others.
+bool Collect(const std::string& baseline_flag) {
   const ExperimentFolder folder(FLAGS_output);
   const ResultTable table = CollectResults(folder);
-  if (!FLAGS_rows_csv.empty()) AddToRowFile(table, FLAGS_rows_csv);
+  std::string baseline = baseline_flag;
+  if (baseline.empty()) baseline = KnownBaseline(folder);
+  if (!baseline.empty()) CheckBaseline(table, baseline);
+  AddRows(table);
   const std::vector<ResultGroup> groups = GroupResults(table);
   std::vector<FileTable> files = {ResultsTable(table),
                                   SummaryTable(table, groups)};
   WriteCsv(folder.Below("results.csv"), files[0]);
   WriteCsv(folder.Below("summary.csv"), files[1]);
-  std::cout << PrintedSummary(table, groups, Width());
-  std::string baseline = baseline_flag;
-  if (baseline.empty()) baseline = KnownBaseline(folder);
+  std::cout << PrintedSummary(table, groups, TerminalWidth());
   if (!baseline.empty()) {
     const auto differences = CompareWithBaseline(table, baseline);
     files.push_back(DifferencesTable(table, differences));
     WriteCsv(folder.Below("differences.csv"), files[2]);
     std::cout << '\n'
-              << PrintedDifferences(table, differences, baseline, Width());
+              << PrintedDifferences(table, differences, baseline,
+                                    TerminalWidth());
   }
   WriteSqlite(folder.Below("results.sqlite"), files);
+  return !WarnOfOutdated(table);
 }
 
 int PrintDryRun(const Experiment& experiment, const SweepOptions& options) {
@@ -237,10 +210,30 @@ int PrintDryRun(const Experiment& experiment, const SweepOptions& options) {
   return kExitDone;
 }
 
+/// What only the tables need is checked before the first run, too.
+void CheckTables(const Experiment& experiment,
+                 const std::vector<ForeignResult>& foreign) {
+  const ExperimentFolder folder(FLAGS_output);
+  std::vector<Task> tasks = PlanTasks(experiment);
+  if (IsExperiment(folder)) {
+    for (const Task& task : KnownTasks(folder)) tasks.push_back(task);
+  }
+  for (const Task& task : PlanForeign(tasks, foreign)) tasks.push_back(task);
+  if (experiment.baseline.empty()) return;
+  try {
+    CheckBaseline(PlannedTable(tasks), experiment.baseline);
+  } catch (const InputError& error) {
+    if (!FLAGS_baseline.empty()) throw;
+    throw InputError(FLAGS_experiment + ": " + error.what());
+  }
+}
+
 int RunExperiment() {
   CatchInterruption(SecondSignal::kIsTold);
   const Experiment experiment = ExperimentFromFlags();
   const SweepOptions options = SweepOptionsFromFlags(experiment);
+  const std::vector<ForeignResult> foreign = ParseForeignResults(FLAGS_foreign);
+  CheckTables(experiment, foreign);
   if (FLAGS_dry_run) return PrintDryRun(experiment, options);
   if (options.jobs * std::max(1, options.threads) > Cores()) {
     std::cerr << "sf_batch: warning: " << options.jobs << " jobs x "
@@ -252,8 +245,7 @@ int RunExperiment() {
       [&](const SweepProgress& progress) { lines.Show(progress); }, WantedStop);
   const bool stopped = Interrupted() && outcome.ended < outcome.planned;
   lines.End();
-  AddForeignResults(ExperimentFolder(FLAGS_output),
-                    ParseForeignResults(FLAGS_foreign));
+  AddForeignResults(ExperimentFolder(FLAGS_output), foreign);
   Collect(experiment.baseline);
   if (stopped) {
     throw std::runtime_error(
@@ -284,14 +276,14 @@ int PrintStatus() {
     std::cout << row.task.name << "  " << row.status
               << (row.error.empty() ? "" : ": " + row.error) << '\n';
   }
+  WarnOfOutdated(table);
   return kExitDone;
 }
 
 int CollectAll() {
   AddForeignResults(ExperimentFolder(FLAGS_output),
                     ParseForeignResults(FLAGS_foreign));
-  Collect(FLAGS_baseline);
-  return kExitDone;
+  return Collect(FLAGS_baseline) ? kExitDone : kExitFailedRuns;
 }
 
 int Execute(const std::string& command) {

@@ -32,6 +32,7 @@ DEFINE_string(mesh, "", "PLY to compare with --ground_truth_mesh.");
 DEFINE_string(ground_truth_mesh, "", "PLY of the truth, same frame.");
 DEFINE_string(output, "",
               "JSON file of the result; default RUN/evaluation.json.");
+DEFINE_bool(check_only, false, "Check the flags, compare nothing.");
 DEFINE_double(max_time_difference, 0.02, "Of matching poses, seconds.");
 DEFINE_int32(samples, 100000, "Random surface points, each direction.");
 DEFINE_double(max_distance, 0.3, "Surface distances are clipped to it, m.");
@@ -213,6 +214,7 @@ void CheckUsage() {
 int Run() {
   CheckUsage();
   const EvaluationOptions options = OptionsFromFlags();
+  if (FLAGS_check_only) return kExitDone;
   if (!FLAGS_trajectory.empty()) {
     EvaluateTrajectory(options);
   } else if (!FLAGS_mesh.empty()) {

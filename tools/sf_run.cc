@@ -121,8 +121,9 @@ void CheckDisk(const TumReader& reader, const RunFolder& folder) {
                                  reader.size(), FLAGS_pictures_every}));
 }
 
-void CheckOutputFlags() {
-  CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
+/// What needs no file to be looked at.
+void CheckValues() {
+  ThreadsFromFlags();
   CheckOption(FLAGS_warped_every >= 0, "warped_every", FLAGS_warped_every,
               "a number of frames, or 0");
   CheckOption(FLAGS_pictures_every >= 0, "pictures_every", FLAGS_pictures_every,
@@ -131,11 +132,15 @@ void CheckOutputFlags() {
               FLAGS_checkpoint_every, "a number of frames, 0 or -1");
   CheckOption(!FLAGS_keep_checkpoints || FLAGS_checkpoint_every > 0,
               "keep_checkpoints", "true", "--checkpoint_every above 0");
+  CheckOption(!FLAGS_keep_same || FLAGS_overwrite, "keep_same", "true",
+              "--overwrite beside it");
+}
+
+void CheckOutput() {
+  CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
   CheckNotInOutput("sequence", FLAGS_sequence);
   CheckNotInOutput("masks", FLAGS_masks);
   CheckNotInOutput("from", FLAGS_from);
-  CheckOption(!FLAGS_keep_same || FLAGS_overwrite, "keep_same", "true",
-              "--overwrite beside it");
 }
 
 int RunSequence() {
@@ -146,12 +151,13 @@ int RunSequence() {
   ApplySetFlag();
   const TumReaderOptions reading = ReaderOptionsFromFlags();
   const PipelineOptions options = PipelineOptionsFromFlags();
+  CheckValues();
   if (FLAGS_print_identity) {
     std::cout << IdentityText(
         IdentityFromFlags(TumReader(FLAGS_sequence, reading)));
     return kExitDone;
   }
-  CheckOutputFlags();
+  CheckOutput();
   const ThreadLimit threads;
   SetBlasThreads(1);
   const auto make = [&] { return MakeReconstruction(reading, options); };

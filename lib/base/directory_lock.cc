@@ -174,6 +174,7 @@ void RemoveStale(const std::string& path, const std::string& text,
 }  // namespace
 
 std::string LockHolder::ToString() const {
+  if (id.empty()) return "a lock without a name";
   return "process " + std::to_string(pid) + " on " + host;
 }
 

@@ -18,7 +18,8 @@ struct LockHolder {
   /// that got the same number later is told apart.
   long long process_start = 0;
 
-  /// "process 4711 on host", for messages.
+  /// "process 4711 on host", for messages; "a lock without a name" if it is
+  /// unknown, as of an empty file.
   std::string ToString() const;
 };
 
@@ -33,7 +34,8 @@ struct LockOptions {
 
 /// A file that says that somebody works in its folder. It names host, process
 /// and its start, and is touched every few seconds while it is held. A lock
-/// whose process is gone or a zombie, or on another host is silent for long, is taken over.
+/// whose process is gone or a zombie, or on another host is silent for long, is
+/// taken over.
 class DirectoryLock {
  public:
   /// Takes the lock at `path` (the folder must exist). Empty while another one

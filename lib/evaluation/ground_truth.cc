@@ -74,10 +74,33 @@ TrueInstance GroundTruth::Find(int instance) const {
   return found != instances.end() ? found->second : TrueInstance();
 }
 
-GroundTruth ReadGroundTruth(const std::string& folder) {
+std::string GroundTruthRoot(const std::string& folder) {
   // A sequence may have its trajectory in both, meshes and tracks in gt alone.
-  fs::path root = fs::path(folder) / "gt";
-  if (!fs::exists(root / "groundtruth.txt")) root = folder;
+  const fs::path below = fs::path(folder) / "gt";
+  return fs::exists(below / "groundtruth.txt") ? below.string() : folder;
+}
+
+std::vector<std::string> GroundTruthFiles(const std::string& folder) {
+  const fs::path root = GroundTruthRoot(folder);
+  std::vector<std::string> files;
+  for (const char* name :
+       {"groundtruth.txt", "labels.json", "static_mesh.ply", "tracks.bin"}) {
+    if (fs::is_regular_file(root / name)) files.emplace_back(name);
+  }
+  for (const char* name : {"label", "mesh"}) {
+    if (!fs::is_directory(root / name)) continue;
+    for (const auto& entry : fs::directory_iterator(root / name)) {
+      if (!entry.is_regular_file()) continue;
+      files.push_back(std::string(name) + "/" +
+                      entry.path().filename().string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+GroundTruth ReadGroundTruth(const std::string& folder) {
+  const fs::path root = GroundTruthRoot(folder);
   if (!fs::exists(root / "groundtruth.txt")) {
     throw InputError(folder +
                      ": expected a folder with groundtruth.txt (or "

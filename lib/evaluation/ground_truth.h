@@ -47,6 +47,13 @@ struct GroundTruth {
 ///     is broken.
 GroundTruth ReadGroundTruth(const std::string& folder);
 
+/// Files that ground truth consists of, sorted paths relative to
+/// GroundTruthRoot(), whatever they hold; nothing is read.
+std::vector<std::string> GroundTruthFiles(const std::string& folder);
+
+/// The folder of the two in which ReadGroundTruth() looks.
+std::string GroundTruthRoot(const std::string& folder);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_EVALUATION_GROUND_TRUTH_H_

@@ -214,6 +214,9 @@ ChildResult RunChild(const std::vector<std::string>& arguments,
   } else if (result.exit_code == kNotStarted && !result.last_lines.empty()) {
     result.last_lines.back() =
         arguments.front() + ": " + result.last_lines.back();
+  } else if (result.exit_code != 0 && result.last_lines.empty()) {
+    result.last_lines = {"exit code " + std::to_string(result.exit_code) +
+                         ", without a word"};
   }
   return result;
 }

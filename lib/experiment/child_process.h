@@ -20,7 +20,7 @@ struct ChildResult {
   /// Exit code; 128 + signal if a signal ended it, 127 if it could not start.
   int exit_code = 0;
   /// Its last lines on stderr that are not empty, the last one last; or what
-  /// else ended it.
+  /// else ended it; never empty if it failed.
   std::vector<std::string> last_lines;
   double wall_seconds = 0;             ///< Of the clock.
   double cpu_seconds = 0;              ///< User and system.

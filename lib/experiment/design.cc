@@ -46,7 +46,7 @@ std::optional<Range> ReadRange(const std::string& value) {
 
 void CheckRange(const Range& range, const std::string& value) {
   CheckOption(range.low < range.high && (!range.logarithmic || range.low > 0),
-              "range", value,
+              "grid", value,
               "lo..hi or log:lo..hi with lo < hi, lo > 0 for log");
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -20,11 +21,16 @@ constexpr std::array<const char*, 8> kOwnKeys = {
     "sequence", "output",         "overwrite", "keep_same",
     "set",      "print_identity", "help",      "row"};
 
-void CheckKeys(const Settings& settings, const std::string& field) {
+/// The same of sf_evaluate.
+constexpr std::array<const char*, 5> kOwnEvaluateKeys = {
+    "run", "ground_truth", "output", "check_only", "help"};
+
+template <std::size_t kSize>
+void CheckKeys(const std::array<const char*, kSize>& own,
+               const Settings& settings, const std::string& field) {
   for (const auto& [key, value] : settings.entries()) {
-    CheckOption(
-        std::find(kOwnKeys.begin(), kOwnKeys.end(), key) == kOwnKeys.end(),
-        field, key, "another key: this one is set for every run");
+    CheckOption(std::find(own.begin(), own.end(), key) == own.end(), field, key,
+                "another key: this one is set for every run");
   }
 }
 
@@ -150,32 +156,54 @@ void CheckNames(std::vector<std::string> names, const std::string& field) {
               "different names, since tables and folders carry them");
 }
 
+/// A number in a form that is the same for 4 and 4.0; other texts as they are.
+std::string Plain(const std::string& value) {
+  char* end = nullptr;
+  const double number = std::strtod(value.c_str(), &end);
+  return value.empty() || *end != '\0' ? value : Json(number).dump();
+}
+
+void CheckValues(const Axis& axis) {
+  CheckOption(!axis.values.empty(), "grid", axis.key, "at least one value");
+  std::set<std::string> known;
+  for (const std::string& value : axis.values) {
+    CheckOption(known.insert(Plain(value)).second, "grid",
+                "'" + axis.key + "=" + value + "'",
+                "every value once, this one is there twice");
+  }
+}
+
 }  // namespace
 
 void Experiment::Check() const {
   CheckOption(!sequences.empty(), "sequences", "''",
               "sequence folders or a list of them");
+  CheckFieldsAlone();
+}
+
+void Experiment::CheckFieldsAlone() const {
   CheckOption(repeat >= 1, "repeat", repeat, "at least 1");
   CheckOption(random >= 0, "random", random, "at least 0");
   std::vector<std::string> names;
   for (const SequenceEntry& entry : sequences) {
-    CheckKeys(entry.set, "sequences.set");
+    CheckKeys(kOwnKeys, entry.set, "sequences.set");
     names.push_back(entry.name);
   }
   CheckNames(names, "sequences");
   names.clear();
   for (const NamedSettings& row : rows) {
-    CheckKeys(row.set, "rows.set");
+    CheckKeys(kOwnKeys, row.set, "rows.set");
     names.push_back(row.name);
   }
   CheckNames(names, "rows");
-  CheckKeys(set, "set");
+  CheckKeys(kOwnKeys, set, "set");
+  CheckKeys(kOwnEvaluateKeys, evaluate, "evaluate");
   Settings swept;
   for (const Axis& axis : grid) {
-    CheckOption(!axis.values.empty(), "grid", axis.key, "at least one value");
+    CheckValues(axis);
     swept.Set(axis.key, "");
   }
-  CheckKeys(swept, "grid");
+  CheckKeys(kOwnKeys, swept, "grid");
 }
 
 Experiment ReadExperiment(const std::string& path) {
@@ -183,12 +211,19 @@ Experiment ReadExperiment(const std::string& path) {
   if (!stream || !std::filesystem::is_regular_file(path)) {
     throw InputError(path + ": cannot be read; expected an experiment file");
   }
-  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false,
-                                /*ignore_comments=*/true);
-  if (json.is_discarded()) throw InputError(path + ": expected JSON");
   try {
+    const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/true,
+                                  /*ignore_comments=*/true);
     const std::filesystem::path absolute = std::filesystem::absolute(path);
-    return ExperimentFromJson(json, absolute.parent_path().string());
+    const Experiment experiment =
+        ExperimentFromJson(json, absolute.parent_path().string());
+    experiment.CheckFieldsAlone();
+    return experiment;
+  } catch (const Json::parse_error& error) {
+    // What follows the bracket says line and column.
+    const std::string text = error.what();
+    throw InputError(path +
+                     ": expected JSON: " + text.substr(text.find(']') + 2));
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
   }

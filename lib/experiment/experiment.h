@@ -38,9 +38,13 @@ struct Experiment {
   std::string baseline;
   Settings evaluate;  ///< Flags of sf_evaluate.
 
-  /// @throw InputError if there is nothing to run, a name occurs twice, or a
-  ///     key is one that the sweep itself sets.
+  /// @throw InputError if there is nothing to run, or as CheckFieldsAlone().
   void Check() const;
+  /// The same of an experiment whose sequences are named elsewhere.
+  ///
+  /// @throw InputError if a name or a value occurs twice, or a key is one that
+  ///     the sweep itself sets.
+  void CheckFieldsAlone() const;
 };
 
 /// Reads an experiment file; its format is in docs/experiments.md. Relative

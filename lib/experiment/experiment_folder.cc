@@ -49,12 +49,24 @@ std::vector<Experiment> SavedExperiments(const ExperimentFolder& folder) {
   return experiments;
 }
 
+/// Tasks that have a record and that no experiment plans.
+std::vector<Task> RecordedTasks(const ExperimentFolder& folder,
+                                const std::set<std::string>& planned) {
+  std::vector<Task> tasks;
+  for (const std::string& name : Entries(folder.Tasks())) {
+    if (planned.count(name) > 0) continue;
+    std::optional<TaskRecord> record = ReadTaskRecord(folder.TaskFolder(name));
+    if (record) tasks.push_back(std::move(record->task));
+  }
+  return tasks;
+}
+
 /// Files of somebody else would be replaced by the tables.
-void CheckOwn(const ExperimentFolder& folder) {
-  if (fs::is_directory(folder.Experiments())) return;
-  for (const char* name : {"results.csv", "results.sqlite", "summary.csv",
-                           "differences.csv", "progress.log", "tasks",
-                           "associations.txt", "depth.txt"}) {
+void CheckNoOthers(const ExperimentFolder& folder) {
+  if (IsExperiment(folder)) return;
+  for (const char* name :
+       {"results.csv", "results.sqlite", "summary.csv", "differences.csv",
+        "progress.log", "tasks", "associations.txt", "depth.txt"}) {
     if (!fs::exists(folder.Below(name))) continue;
     throw InputError(folder.root() + ": holds a " + name +
                      " of something else: expected the --output of an "
@@ -104,7 +116,7 @@ std::string ExperimentFolder::Lock(const std::string& task) const {
 
 void AddExperiment(const ExperimentFolder& folder,
                    const Experiment& experiment) {
-  CheckOwn(folder);
+  CheckNoOthers(folder);
   for (const Experiment& saved : SavedExperiments(folder)) {
     for (const SequenceEntry& before : saved.sequences) {
       for (const SequenceEntry& now : experiment.sequences) {
@@ -128,12 +140,12 @@ void AddExperiment(const ExperimentFolder& folder,
       [&](std::ostream& out) { out << text << '\n'; });
 }
 
+bool IsExperiment(const ExperimentFolder& folder) {
+  return !SavedExperiments(folder).empty() ||
+         !RecordedTasks(folder, {}).empty();
+}
+
 std::vector<Task> KnownTasks(const ExperimentFolder& folder) {
-  if (!fs::is_directory(folder.Experiments()) &&
-      !fs::is_directory(folder.Tasks())) {
-    throw InputError(folder.root() +
-                     ": not found; expected the --output of sf_batch run");
-  }
   std::vector<Task> tasks;
   std::set<std::string> names;
   for (const Experiment& experiment : SavedExperiments(folder)) {
@@ -141,12 +153,13 @@ std::vector<Task> KnownTasks(const ExperimentFolder& folder) {
       if (names.insert(task.name).second) tasks.push_back(std::move(task));
     }
   }
-  for (const std::string& name : Entries(folder.Tasks())) {
-    if (names.count(name) > 0) continue;
-    std::optional<TaskRecord> record = ReadTaskRecord(folder.TaskFolder(name));
-    if (record) tasks.push_back(std::move(record->task));
+  for (Task& task : RecordedTasks(folder, names)) {
+    tasks.push_back(std::move(task));
   }
-  return tasks;
+  if (!tasks.empty()) return tasks;
+  throw InputError(folder.root() +
+                   ": holds no experiment; expected the --output of sf_batch "
+                   "run");
 }
 
 std::string KnownBaseline(const ExperimentFolder& folder) {

@@ -41,10 +41,14 @@ class ExperimentFolder {
 void AddExperiment(const ExperimentFolder& folder,
                    const Experiment& experiment);
 
+/// Whether an experiment was run into the folder, and not somebody else's files
+/// lie there under the same names.
+bool IsExperiment(const ExperimentFolder& folder);
+
 /// Tasks of all experiments that were run into the folder, in the order of
 /// these, and whatever else lies there.
 ///
-/// @throw InputError if there is no such folder.
+/// @throw InputError if it is not IsExperiment().
 std::vector<Task> KnownTasks(const ExperimentFolder& folder);
 
 /// Baseline of the last experiment that names one; empty if none does.

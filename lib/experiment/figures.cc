@@ -75,7 +75,7 @@ double Figures::At(const std::string& name) const {
 }
 
 Figures ReadFigures(const std::string& run, bool evaluated) {
-  const std::string damage = FileDamage(ReadRunState(run), run);
+  const std::string damage = FileDamage(ReadRunState(run), run, evaluated);
   if (!damage.empty()) throw InputError(damage);
   Figures figures;
   ReadSummary(run, &figures);

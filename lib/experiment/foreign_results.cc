@@ -1,6 +1,8 @@
 #include "splitfusion/lib/experiment/foreign_results.h"
 
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/ghosts.h"
@@ -82,22 +84,36 @@ ForeignResult ParseOne(const std::string& entry) {
 
 std::vector<ForeignResult> ParseForeignResults(const std::string& text) {
   std::vector<ForeignResult> results;
+  std::set<std::pair<std::string, std::string>> known;
   for (const std::string& entry : SplitOutsideQuotes(text, ';')) {
-    results.push_back(ParseOne(entry));
+    const ForeignResult result = ParseOne(entry);
+    CheckOption(known.emplace(result.system, result.sequence).second, "foreign",
+                "'" + entry + "'",
+                "one result of a system on a sequence; others under other "
+                "names");
+    results.push_back(result);
   }
   return results;
+}
+
+std::vector<Task> PlanForeign(const std::vector<Task>& tasks,
+                              const std::vector<ForeignResult>& results) {
+  std::vector<Task> planned;
+  for (const ForeignResult& result : results) {
+    planned.push_back(MakeForeignTask(FindTask(tasks, result), result.system));
+  }
+  return planned;
 }
 
 void AddForeignResults(const ExperimentFolder& folder,
                        const std::vector<ForeignResult>& results) {
   if (results.empty()) return;
-  const std::vector<Task> tasks = KnownTasks(folder);
-  for (const ForeignResult& result : results) {
+  const std::vector<Task> planned = PlanForeign(KnownTasks(folder), results);
+  for (std::size_t i = 0; i < results.size(); ++i) {
     TaskRecord record;
-    const Task known = FindTask(tasks, result);
-    record.task = MakeForeignTask(known, result.system);
+    record.task = planned[i];
     record.state = TaskState::kRecorded;
-    record.figures = EvaluateForeign(result, known.ground_truth);
+    record.figures = EvaluateForeign(results[i], record.task.ground_truth);
     record.host = HostName();
     record.started = record.ended = TimeText();
     const std::string path = folder.TaskFolder(record.task.name);

@@ -18,8 +18,16 @@ struct ForeignResult {
 
 /// "NAME:SEQUENCE=TRAJECTORY[,BACKGROUND]; ...".
 ///
-/// @throw InputError if it is written otherwise.
+/// @throw InputError if it is written otherwise, or names a system twice on one
+///     sequence.
 std::vector<ForeignResult> ParseForeignResults(const std::string& text);
+
+/// The rows that the results become.
+///
+/// @param tasks of the experiment.
+/// @throw InputError if a sequence is none of theirs, or has no ground truth.
+std::vector<Task> PlanForeign(const std::vector<Task>& tasks,
+                              const std::vector<ForeignResult>& results);
 
 /// Evaluates results of other systems against the ground truth of the
 /// experiment's sequences, and keeps them in its folder as finished rows:

@@ -55,7 +55,7 @@ class Groups {
   std::vector<Gathered> groups_;
 };
 
-/// What the baseline is, by keys.
+/// What the baseline is, by keys that vary.
 Settings ReadBaseline(const ResultTable& table, const std::string& baseline) {
   Settings settings;
   if (baseline.find('=') == std::string::npos) {
@@ -78,6 +78,19 @@ bool IsBaseline(const ResultRow& row, const Settings& baseline) {
                      [&](const Settings::Entry& entry) {
                        return ValueOf(row.task, entry.first) == entry.second;
                      });
+}
+
+/// Runs of the baseline, at least one.
+std::vector<const ResultRow*> FindCandidates(const ResultTable& table,
+                                             const std::string& baseline) {
+  const Settings wanted = ReadBaseline(table, baseline);
+  std::vector<const ResultRow*> candidates;
+  for (const ResultRow& row : table.rows) {
+    if (IsBaseline(row, wanted)) candidates.push_back(&row);
+  }
+  CheckOption(!candidates.empty(), "baseline", baseline,
+              "the row or the values of some runs");
+  return candidates;
 }
 
 /// Whether two rows agree in all keys of designs but those of the baseline.
@@ -118,7 +131,7 @@ void AddDifference(const ResultRow& row, const ResultRow& partner,
     gathered->values[i].push_back(row.figures.values[i] -
                                   partner.figures.values[i]);
   }
-  gathered->seconds.push_back(row.wall_seconds);
+  gathered->seconds.push_back(row.cost.wall_seconds);
 }
 
 }  // namespace
@@ -157,22 +170,22 @@ std::vector<ResultGroup> GroupResults(const ResultTable& table) {
     for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
       gathered.values[i].push_back(row.figures.values[i]);
     }
-    if (row.wall_seconds > 0) gathered.seconds.push_back(row.wall_seconds);
+    gathered.seconds.push_back(row.cost.wall_seconds);
   }
   return groups.Describe();
+}
+
+void CheckBaseline(const ResultTable& table, const std::string& baseline) {
+  FindCandidates(table, baseline);
 }
 
 std::vector<ResultGroup> CompareWithBaseline(const ResultTable& table,
                                              const std::string& baseline) {
   const Settings wanted = ReadBaseline(table, baseline);
-  std::vector<const ResultRow*> candidates;
+  const std::vector<const ResultRow*> candidates =
+      FindCandidates(table, baseline);
   std::set<std::string> sequences;
-  for (const ResultRow& row : table.rows) {
-    if (IsBaseline(row, wanted)) candidates.push_back(&row);
-    sequences.insert(row.task.sequence);
-  }
-  CheckOption(!candidates.empty(), "baseline", baseline,
-              "the row or the values of some runs");
+  for (const ResultRow& row : table.rows) sequences.insert(row.task.sequence);
   Groups groups, over_all;
   for (const ResultRow& row : table.rows) {
     if (IsBaseline(row, wanted)) continue;

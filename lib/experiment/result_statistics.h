@@ -38,14 +38,17 @@ inline constexpr const char* kAllSequences = "(all)";
 /// Means over the repeats, in the order of the table.
 std::vector<ResultGroup> GroupResults(const ResultTable& table);
 
+/// @param baseline a row's name, or "KEY=V; KEY=V".
+/// @throw InputError if no run matches it, or it names a key that does not
+///     vary.
+void CheckBaseline(const ResultTable& table, const std::string& baseline);
+
 /// Differences to the baseline, run by run: the same sequence and repeat, and
 /// the same values of all designs' keys that the baseline does not name. Groups
 /// of every sequence, then, if there are several, over all of them; the
 /// baseline's own runs and runs without a partner are left out.
 ///
-/// @param baseline a row's name, or "KEY=V; KEY=V".
-/// @throw InputError if no run matches it, or it names a key that does not
-///     vary.
+/// @throw InputError as CheckBaseline().
 std::vector<ResultGroup> CompareWithBaseline(const ResultTable& table,
                                              const std::string& baseline);
 

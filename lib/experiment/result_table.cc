@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 
 #include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/experiment/outdated_runs.h"
 #include "splitfusion/lib/experiment/run_state.h"
-#include "splitfusion/lib/experiment/task_record.h"
 
 namespace splitfusion {
 namespace {
@@ -62,8 +63,16 @@ std::string BareStatus(const RunState& state, const std::string& folder) {
   return status == RunStatus::kRunning ? "unfinished" : ToString(status);
 }
 
-void FillFigures(const std::string& run, const TaskRecord& record,
-                 ResultRow* row) {
+/// What sf_run does not say itself.
+void FillCost(const RunCost& cost, Figures* figures) {
+  double& cpu = figures->At("cpu_seconds_per_frame");
+  if (!std::isfinite(cpu)) cpu = cost.cpu_seconds / figures->At("frames");
+  double& memory = figures->At("peak_memory_bytes");
+  if (!std::isfinite(memory)) memory = cost.peak_memory_bytes;
+}
+
+void FillFigures(const std::string& run, const RunState& state,
+                 const TaskRecord& record, ResultRow* row) {
   if (record.state == TaskState::kRecorded) {
     row->figures = record.figures;
     return;
@@ -74,15 +83,30 @@ void FillFigures(const std::string& run, const TaskRecord& record,
     row->status = std::string("damaged: ") + error.what();
     return;
   }
-  double& cpu = row->figures.At("cpu_seconds_per_frame");
-  const double frames = row->figures.At("frames");
-  if (!std::isfinite(cpu) && record.cpu_seconds > 0 && frames > 0) {
-    cpu = record.cpu_seconds / frames;
+  if (state.marker && !state.marker->resumed_at.empty()) {
+    // Of its last part alone.
+    row->figures.At("peak_memory_bytes") =
+        std::numeric_limits<double>::quiet_NaN();
   }
-  double& memory = row->figures.At("peak_memory_bytes");
-  if (!std::isfinite(memory) && record.peak_memory_bytes > 0) {
-    memory = static_cast<double>(record.peak_memory_bytes);
+  FillCost(record.cost, &row->figures);
+}
+
+/// What the run directory and the record say of a row besides its status.
+void FillFacts(const RunState& state, const TaskRecord* record,
+               ResultRow* row) {
+  if (state.marker) {
+    row->error = state.marker->error;
+    row->identity = state.marker->identity.Hash();
+    row->parts = state.marker->identity.parts;
   }
+  if (record == nullptr) return;
+  row->error = record->Error();
+  row->identity = record->identity;
+  if (record->state == TaskState::kRecorded)
+    row->parts = record->identity_parts;
+  row->evaluated_by = record->evaluated_by;
+  row->ended = record->ended;
+  row->cost = record->cost;
 }
 
 ResultRow ReadRow(const ExperimentFolder& folder, const Task& task) {
@@ -91,15 +115,7 @@ ResultRow ReadRow(const ExperimentFolder& folder, const Task& task) {
   const RunState state = ReadRunState(run);
   ResultRow row;
   row.task = record ? record->task : task;
-  if (state.marker) {
-    row.error = state.marker->error;
-    row.identity = state.marker->identity.Hash();
-  }
-  if (record) {
-    row.error = record->Error();
-    row.identity = record->identity;
-  }
-  row.wall_seconds = record ? record->wall_seconds : 0;
+  FillFacts(state, record ? &*record : nullptr, &row);
   if (LivingHolder(folder.Lock(task.name))) {
     row.status = "running";
   } else {
@@ -107,7 +123,7 @@ ResultRow ReadRow(const ExperimentFolder& folder, const Task& task) {
                         : BareStatus(state, folder.TaskFolder(task.name));
   }
   if (row.IsComplete()) {
-    FillFigures(run, record.value_or(TaskRecord()), &row);
+    FillFigures(run, state, record.value_or(TaskRecord()), &row);
   }
   return row;
 }
@@ -146,7 +162,7 @@ std::vector<std::string> DifferingKeys(const std::vector<ResultRow>& rows) {
   return differing;
 }
 
-void FindKeys(ResultTable* table) {
+void FillValues(ResultTable* table) {
   const auto& rows = table->rows;
   const bool has_rows =
       std::any_of(rows.begin(), rows.end(),
@@ -156,6 +172,11 @@ void FindKeys(ResultTable* table) {
   AddKeys(table->design, &table->keys);
   for (const ResultRow& row : rows) AddKeys(row.task.grouped, &table->keys);
   AddKeys(DifferingKeys(rows), &table->keys);
+  for (ResultRow& row : table->rows) {
+    for (const std::string& key : table->keys) {
+      row.values.push_back(ValueOf(row.task, key));
+    }
+  }
 }
 
 }  // namespace
@@ -171,12 +192,20 @@ ResultTable CollectResults(const ExperimentFolder& folder) {
   for (const Task& task : KnownTasks(folder)) {
     table.rows.push_back(ReadRow(folder, task));
   }
-  FindKeys(&table);
-  for (ResultRow& row : table.rows) {
-    for (const std::string& key : table.keys) {
-      row.values.push_back(ValueOf(row.task, key));
-    }
+  FillValues(&table);
+  MarkOutdated(&table);
+  return table;
+}
+
+ResultTable PlannedTable(const std::vector<Task>& tasks) {
+  ResultTable table;
+  for (const Task& task : tasks) {
+    ResultRow row;
+    row.task = task;
+    row.status = "waiting";
+    table.rows.push_back(row);
   }
+  FillValues(&table);
   return table;
 }
 
@@ -184,9 +213,10 @@ void AddToRowFile(const ResultTable& table, const std::string& path) {
   RowFile file(path);
   for (const ResultRow& row : table.rows) {
     if (!row.IsComplete() || row.identity.empty()) continue;
-    file.Set(row.identity,
-             {row.task.name, row.task.sequence, row.task.row,
-              SettingsText(row.task.settings), row.wall_seconds, row.figures});
+    file.Set(
+        RowKey(row.identity, row.evaluated_by),
+        {row.task.name, row.task.sequence, row.task.row,
+         SettingsText(row.task.settings), row.cost.wall_seconds, row.figures});
   }
   file.Write(path);
 }

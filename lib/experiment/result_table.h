@@ -7,6 +7,7 @@
 #include "splitfusion/lib/experiment/experiment_folder.h"
 #include "splitfusion/lib/experiment/figures.h"
 #include "splitfusion/lib/experiment/row_file.h"
+#include "splitfusion/lib/experiment/task_record.h"
 
 namespace splitfusion {
 
@@ -18,7 +19,10 @@ struct ResultRow {
   Figures figures;                  ///< Unknown unless it is complete.
   std::vector<std::string> values;  ///< By ResultTable::keys.
   std::string identity;             ///< Of a complete one; may be empty.
-  double wall_seconds = 0;          ///< Of the whole run.
+  NamedValues parts;         ///< RunIdentity::parts, where they are known.
+  NamedValues evaluated_by;  ///< EvaluationParts() of its evaluation.
+  std::string ended;         ///< When it was looked at last, TimeText().
+  RunCost cost;              ///< Of the whole run.
 
   /// Whether its figures count.
   bool IsComplete() const { return status == "complete"; }
@@ -35,10 +39,14 @@ struct ResultTable {
 };
 
 /// Reads the table of an experiment from its run directories. What cannot be
-/// read is the status "damaged: ..." of its row, and no row is left out.
+/// read is the status "damaged: ..." of its row, what must not stand beside
+/// newer rows "outdated: ..."; no row is left out.
 ///
-/// @throw InputError if there is no such folder.
+/// @throw InputError if it is no folder of an experiment.
 ResultTable CollectResults(const ExperimentFolder& folder);
+
+/// The table of tasks before any of them has run: all are "waiting".
+ResultTable PlannedTable(const std::vector<Task>& tasks);
 
 /// Adds the finished rows of a table to a file of rows.
 ///

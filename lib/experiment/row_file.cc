@@ -2,10 +2,12 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/report/csv_row.h"
 
@@ -45,16 +47,29 @@ std::vector<std::string> Fields(const std::string& line) {
   return fields;
 }
 
+/// NaN for an empty field.
+double ReadNumber(const std::string& text) {
+  return text.empty() ? std::numeric_limits<double>::quiet_NaN()
+                      : std::strtod(text.c_str(), nullptr);
+}
+
 Figures ReadFigures(const std::vector<std::string>& fields) {
   Figures figures;
   for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
-    const std::string& text = fields[kTextColumns + i];
-    if (!text.empty()) figures.values[i] = std::strtod(text.c_str(), nullptr);
+    figures.values[i] = ReadNumber(fields[kTextColumns + i]);
   }
   return figures;
 }
 
 }  // namespace
+
+std::string RowKey(const std::string& identity, const NamedValues& evaluation) {
+  if (evaluation.empty()) return identity;
+  ContentHash hash;
+  hash.Add(identity);
+  for (const auto& [name, value] : evaluation) hash.Add(name).Add(value);
+  return hash.Hex();
+}
 
 RowFile::RowFile(const std::string& path) {
   std::ifstream stream(path);
@@ -70,20 +85,19 @@ RowFile::RowFile(const std::string& path) {
                        ": expected a row that sf_batch writes");
     }
     if (number == 1) continue;
-    Set(fields[0],
-        {fields[1], fields[2], fields[3], fields[4],
-         std::strtod(fields[5].c_str(), nullptr), ReadFigures(fields)});
+    Set(fields[0], {fields[1], fields[2], fields[3], fields[4],
+                    ReadNumber(fields[5]), ReadFigures(fields)});
   }
 }
 
-const RowFile::Row* RowFile::Find(const std::string& identity,
+const RowFile::Row* RowFile::Find(const std::string& key,
                                   const std::string& sequence) const {
-  const auto found = rows_.find({identity, sequence});
+  const auto found = rows_.find({key, sequence});
   return found == rows_.end() ? nullptr : &found->second;
 }
 
-void RowFile::Set(const std::string& identity, const Row& row) {
-  rows_[{identity, row.sequence}] = row;
+void RowFile::Set(const std::string& key, const Row& row) {
+  rows_[{key, row.sequence}] = row;
 }
 
 void RowFile::Write(const std::string& path) const {

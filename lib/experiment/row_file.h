@@ -6,10 +6,15 @@
 #include <utility>
 
 #include "splitfusion/lib/experiment/figures.h"
+#include "splitfusion/lib/report/run_identity.h"
 
 namespace splitfusion {
 
-/// Figures of finished runs by their identity, in a small CSV file that
+/// What decides the figures of a run: its identity and, if it was evaluated,
+/// EvaluationParts().
+std::string RowKey(const std::string& identity, const NamedValues& evaluation);
+
+/// Figures of finished runs by RowKey(), in a small CSV file that
 /// outlives the run directories: identity, sequence, task, settings, and the
 /// figures.
 class RowFile {
@@ -20,7 +25,7 @@ class RowFile {
     std::string sequence;  ///< Name of the sequence.
     std::string row;       ///< Name of the row.
     std::string settings;  ///< As SettingsText().
-    double seconds = 0;    ///< Of the whole run, wall clock.
+    double seconds = 0;    ///< Of the whole run, wall clock; NaN = unknown.
     Figures figures;       ///< All that are known.
   };
 
@@ -32,19 +37,18 @@ class RowFile {
 
   /// Whether there is no row.
   bool empty() const { return rows_.empty(); }
-  /// The row of an identity and a sequence; null if there is none. The same
+  /// The row of a key and a sequence; null if there is none. The same
   /// images may be judged by another truth under another name.
-  const Row* Find(const std::string& identity,
-                  const std::string& sequence) const;
-  /// Adds a row, or replaces the one of the same identity and sequence.
-  void Set(const std::string& identity, const Row& row);
+  const Row* Find(const std::string& key, const std::string& sequence) const;
+  /// Adds a row, or replaces the one of the same key and sequence.
+  void Set(const std::string& key, const Row& row);
   /// Writes all rows, in the order of their tasks.
   ///
   /// @throw InputError if that is not possible.
   void Write(const std::string& path) const;
 
  private:
-  /// By identity and sequence.
+  /// By key and sequence.
   std::map<std::pair<std::string, std::string>, Row> rows_;
 };
 

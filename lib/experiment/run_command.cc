@@ -1,17 +1,13 @@
 #include "splitfusion/lib/experiment/run_command.h"
 
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/experiment/child_process.h"
-#include "splitfusion/lib/experiment/design.h"
+#include "splitfusion/lib/experiment/repeats.h"
 #include "splitfusion/lib/experiment/scratch_folder.h"
 
 namespace splitfusion {
@@ -21,18 +17,19 @@ using Json = nlohmann::ordered_json;
 
 bool IsTermKey(const std::string& key) { return key.rfind("terms.", 0) == 0; }
 
-double ShiftFactor(const std::string& key, int repeat) {
-  const double share =
-      StableUniform("repeat " + std::to_string(repeat) + " " + key);
-  // 1 to 9 millionths, up or down.
-  const double size = 1 + 8 * std::abs(2 * share - 1);
-  return 1 + (share < 0.5 ? -1e-6 : 1e-6) * size;
-}
-
 std::string JoinedOptions(const std::vector<std::string>& options) {
   std::string text;
   for (const std::string& option : options) text += option + '\n';
   return text;
+}
+
+/// Options and program, which are the same for all sequences.
+NamedValues WithoutInput(const NamedValues& parts) {
+  NamedValues rest;
+  for (const auto& [name, value] : parts) {
+    if (name.rfind("input.", 0) != 0) rest[name] = value;
+  }
+  return rest;
 }
 
 /// Runs `sf_run --print_identity`.
@@ -43,11 +40,7 @@ RunIdentity AskProgram(std::vector<std::string> arguments,
   arguments.push_back("--sequence=" + sequence);
   arguments.push_back("--output=" + folder.path() + "/run");
   const ChildResult child = RunChild(arguments, folder.path() + "/ask");
-  if (child.exit_code != 0) {
-    throw InputError(child.last_lines.empty()
-                         ? arguments.front() + " --print_identity: failed"
-                         : child.LastLine());
-  }
+  if (child.exit_code != 0) throw InputError(child.LastLine());
   try {
     const Json json = Json::parse(std::ifstream(folder.path() + "/ask.log"));
     return {json.at("identity_parts").get<NamedValues>(),
@@ -59,25 +52,6 @@ RunIdentity AskProgram(std::vector<std::string> arguments,
 }
 
 }  // namespace
-
-Settings ShiftVoxels(const NamedValues& parts, int repeat) {
-  Settings settings;
-  if (repeat == 0) return settings;
-  for (const char* key : {"object_voxel", "background_voxel"}) {
-    const auto found = parts.find(key);
-    const double size =
-        found == parts.end() ? 0 : std::strtod(found->second.c_str(), nullptr);
-    if (!(size > 0)) {
-      throw InputError(std::string("--repeat: expected sf_run --print_identity "
-                                   "to tell its ") +
-                       key);
-    }
-    char text[48];
-    std::snprintf(text, sizeof(text), "%.12g", size * ShiftFactor(key, repeat));
-    settings.Set(key, text);
-  }
-  return settings;
-}
 
 RunCommand::RunCommand(std::string run_program, int threads)
     : run_program_(std::move(run_program)), threads_(threads) {}
@@ -156,19 +130,27 @@ bool RunCommand::CanBeRead(const Task& task) const try {
   return false;
 }
 
-void RunCommand::CheckOptions(const std::vector<Task>& tasks) const {
-  std::set<std::string> checked;
+void RunCommand::CheckOptions(const std::vector<Task>& tasks) {
   for (const Task& task : tasks) {
     const std::string options = JoinedOptions(Plain(task));
-    if (task.repeat > 0 || checked.count(options) > 0) continue;
+    if (task.repeat > 0 || planned_.count(options) > 0) continue;
     try {
-      AskPlain(task);
-      checked.insert(options);
-    } catch (const InputError&) {
+      planned_[options] = WithoutInput(AskPlain(task).parts);
+    } catch (const InputError& error) {
       // A sequence that cannot be read is the failure of its own runs.
-      if (CanBeRead(task)) throw;
+      if (CanBeRead(task)) {
+        throw InputError("options \"" + SettingsText(task.settings) +
+                         "\": " + error.what());
+      }
     }
   }
+}
+
+std::string RunCommand::ChangesSincePlanned(const Task& task,
+                                            const RunIdentity& identity) const {
+  const auto found = planned_.find(JoinedOptions(Plain(task)));
+  if (found == planned_.end()) return "";
+  return DifferencesBeyondRepeats(found->second, WithoutInput(identity.parts));
 }
 
 }  // namespace splitfusion

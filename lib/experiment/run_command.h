@@ -39,8 +39,15 @@ class RunCommand {
   /// Whether sf_run takes the options of all tasks, each set of options asked
   /// once, on the first sequence that can be read.
   ///
-  /// @throw InputError with the last line of sf_run if it does not.
-  void CheckOptions(const std::vector<Task>& tasks) const;
+  /// @throw InputError with the options and the last line of sf_run if it does
+  ///     not.
+  void CheckOptions(const std::vector<Task>& tasks);
+
+  /// How the options and the program of a finished run differ from what they
+  /// were at CheckOptions(), as where a flagfile was edited meanwhile; empty if
+  /// they do not, or if nothing is known of them.
+  std::string ChangesSincePlanned(const Task& task,
+                                  const RunIdentity& identity) const;
 
  private:
   std::vector<std::string> Plain(const Task& task) const;
@@ -49,18 +56,12 @@ class RunCommand {
 
   std::string run_program_;
   int threads_;
+  /// By the options' text: parts but for the input.
+  std::map<std::string, NamedValues> planned_;
   mutable std::mutex mutex_;
   /// Identities of undisturbed tasks, by the options' text and the sequence.
   mutable std::map<std::string, RunIdentity> known_;
 };
-
-/// Settings that move the voxels of a repeat: `object_voxel` and
-/// `background_voxel` become greater or smaller by one to nine millionths,
-/// which the number of the repeat decides alone; none for repeat 0.
-///
-/// @param parts what sf_run says of the undisturbed run.
-/// @throw InputError if the voxel sizes are not in `parts`.
-Settings ShiftVoxels(const NamedValues& parts, int repeat);
 
 }  // namespace splitfusion
 

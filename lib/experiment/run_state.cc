@@ -18,16 +18,20 @@ RunState ReadRunState(const std::string& run) {
   return state;
 }
 
-std::string FileDamage(const RunState& state, const std::string& run) {
+std::string FileDamage(const RunState& state, const std::string& run,
+                       bool evaluated) {
   if (!state.marker) return state.damage;
-  for (const char* name : {"summary.json", "evaluation.json"}) {
+  for (const std::string name : {"summary.json", "evaluation.json"}) {
+    if (name == "evaluation.json" && !evaluated) continue;
     try {
       CheckRunFile(*state.marker, run, name);
     } catch (const InputError&) {
-      return std::string(name) + ": not as it was written";
+      return name + (std::filesystem::exists(std::filesystem::path(run) / name)
+                         ? ": not as it was written"
+                         : ": missing");
     }
   }
-  return "";
+  return FindMissing(*state.marker, run);
 }
 
 nlohmann::ordered_json ReadJsonOrNull(const std::string& path) {

@@ -28,10 +28,11 @@ struct RunState {
 /// Reads RUN/run.json.
 RunState ReadRunState(const std::string& run);
 
-/// Why the marker's files that tables are made of cannot be trusted: the first
-/// of summary.json and evaluation.json that is not as it was written; empty if
-/// there is nothing against them.
-std::string FileDamage(const RunState& state, const std::string& run);
+/// Why a run is not as it was written: summary.json or, if `evaluated`,
+/// evaluation.json has another content, or any file but the evaluation is
+/// missing or has another size; empty if there is nothing against it.
+std::string FileDamage(const RunState& state, const std::string& run,
+                       bool evaluated);
 
 /// A JSON file; null if it is missing or broken.
 nlohmann::ordered_json ReadJsonOrNull(const std::string& path);

@@ -74,8 +74,10 @@ const std::string* Settings::Find(const std::string& key) const {
   return nullptr;
 }
 
-std::vector<std::string> SplitOutsideQuotes(const std::string& text,
-                                            char separator) {
+namespace {
+
+/// Parts between separators, empty ones too.
+std::vector<std::string> SplitAll(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   bool quoted = false;
   for (const char c : text) {
@@ -87,6 +89,14 @@ std::vector<std::string> SplitOutsideQuotes(const std::string& text,
     }
   }
   for (std::string& part : parts) part = Trimmed(part);
+  return parts;
+}
+
+}  // namespace
+
+std::vector<std::string> SplitOutsideQuotes(const std::string& text,
+                                            char separator) {
+  std::vector<std::string> parts = SplitAll(text, separator);
   parts.erase(std::remove(parts.begin(), parts.end(), ""), parts.end());
   return parts;
 }
@@ -123,15 +133,11 @@ std::vector<Axis> ParseGrid(const std::string& text, const std::string& field) {
   std::vector<Axis> axes;
   for (const auto& [key, values] : SplitEntries(text, field)) {
     Axis axis{key, {}};
-    std::set<std::string> known;
-    for (const std::string& part : SplitOutsideQuotes(values, ',')) {
+    for (const std::string& part : SplitAll(values, ',')) {
+      CheckOption(!part.empty(), field, "'" + key + "=" + values + "'",
+                  "values, separated by commas; an empty one as \"\"");
       axis.values.push_back(Unquoted(part));
-      CheckOption(known.insert(axis.values.back()).second, field,
-                  "'" + key + "=" + values + "'",
-                  "every value once, " + part + " is there twice");
     }
-    CheckOption(!axis.values.empty(), field, "'" + key + "='",
-                "values, separated by commas");
     axes.push_back(axis);
   }
   return axes;

@@ -56,7 +56,7 @@ Settings ParseSettings(const std::string& text, const std::string& field);
 
 /// "KEY=VALUE,VALUE; KEY=VALUE,VALUE", quoted as in ParseSettings.
 ///
-/// @throw InputError as ParseSettings, or if a value occurs twice.
+/// @throw InputError as ParseSettings, or if a value is missing.
 std::vector<Axis> ParseGrid(const std::string& text, const std::string& field);
 
 /// Text that ParseSettings() reads back.

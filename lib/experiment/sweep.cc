@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <deque>
 #include <exception>
@@ -15,6 +16,7 @@
 #include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/experiment/task_evaluation.h"
 
 namespace splitfusion {
 namespace {
@@ -38,6 +40,15 @@ void CheckPrograms(const std::vector<Task>& tasks,
     if (task.ground_truth.empty()) continue;
     CheckProgram(options.runner.evaluate_program, "sf_evaluate");
   }
+}
+
+/// All that can be refused is refused before the first run.
+void CheckBeforeRuns(const std::vector<Task>& tasks,
+                     const SweepOptions& options, RunCommand* command) {
+  options.Check();
+  CheckPrograms(tasks, options);
+  CheckEvaluateFlags(options.runner.evaluate_program, tasks);
+  command->CheckOptions(tasks);
 }
 
 void AppendLine(const std::string& path, const std::string& text) {
@@ -201,8 +212,14 @@ std::string SweepProgress::ToString() const {
     text += " FAILED: " + record.Error();
   } else if (last.kept) {
     text += " kept";
+    if (!last.evaluated_anew.empty()) {
+      text += ", evaluated again: " + last.evaluated_anew;
+    }
   } else {
-    text += " done, " + Seconds(record.wall_seconds);
+    text += " done";
+    if (std::isfinite(record.cost.wall_seconds)) {
+      text += ", " + Seconds(record.cost.wall_seconds);
+    }
     if (!record.reason.empty()) text += ", again: " + record.reason;
   }
   if (seconds_left > 0) text += ", " + Seconds(seconds_left) + " left";
@@ -211,11 +228,9 @@ std::string SweepProgress::ToString() const {
 
 SweepOutcome RunSweep(const Experiment& experiment, const SweepOptions& options,
                       const SweepCallback& progress, const StopRequest& stop) {
-  options.Check();
   const std::vector<Task> tasks = PlanTasks(experiment);
-  CheckPrograms(tasks, options);
-  const RunCommand command(options.run_program, options.threads);
-  command.CheckOptions(tasks);
+  RunCommand command(options.run_program, options.threads);
+  CheckBeforeRuns(tasks, options, &command);
   MakeFolder(options.output);
   AddExperiment(ExperimentFolder(options.output), experiment);
   return SweepQueue(tasks, options, command, progress, stop).Run();
@@ -223,11 +238,9 @@ SweepOutcome RunSweep(const Experiment& experiment, const SweepOptions& options,
 
 std::vector<PlannedTask> DryRun(const Experiment& experiment,
                                 const SweepOptions& options) {
-  options.Check();
   const std::vector<Task> tasks = PlanTasks(experiment);
-  CheckPrograms(tasks, options);
-  const RunCommand command(options.run_program, options.threads);
-  command.CheckOptions(tasks);
+  RunCommand command(options.run_program, options.threads);
+  CheckBeforeRuns(tasks, options, &command);
   const ExperimentFolder folder(options.output);
   std::vector<PlannedTask> planned;
   planned.reserve(tasks.size());

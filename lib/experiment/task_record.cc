@@ -3,6 +3,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -39,6 +42,22 @@ std::string RecordPath(const std::string& folder) {
   return (std::filesystem::path(folder) / "task.json").string();
 }
 
+/// null stands for what is unknown.
+Json KnownNumber(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+double MeasuredNumber(const Json& value) {
+  // Nothing takes no time: 0 stood for what had not been measured.
+  const bool known = value.is_number() && value.get<double>() > 0;
+  return known ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// An object of texts; none of what else it is.
+NamedValues ValuesFromJson(const Json& json) {
+  return json.is_object() ? json.get<NamedValues>() : NamedValues();
+}
+
 Json RecordJson(const TaskRecord& record) {
   Json json = ToJson(record.task);
   json["format_version"] = 1;
@@ -50,13 +69,14 @@ Json RecordJson(const TaskRecord& record) {
   json["run_id"] = record.run_id;
   json["evaluated_id"] = record.evaluated_id;
   json["evaluated_by"] = record.evaluated_by;
-  json["wall_seconds"] = record.wall_seconds;
-  json["cpu_seconds"] = record.cpu_seconds;
-  json["peak_memory_bytes"] = record.peak_memory_bytes;
+  json["wall_seconds"] = KnownNumber(record.cost.wall_seconds);
+  json["cpu_seconds"] = KnownNumber(record.cost.cpu_seconds);
+  json["peak_memory_bytes"] = KnownNumber(record.cost.peak_memory_bytes);
   json["host"] = record.host;
   json["started"] = record.started;
   json["ended"] = record.ended;
   json["identity"] = record.identity;
+  json["identity_parts"] = record.identity_parts;
   json["figures"] = ToJson(record.figures);
   return json;
 }
@@ -71,14 +91,15 @@ TaskRecord RecordFromJson(const Json& json) {
   record.reason = json.at("reason").get<std::string>();
   record.run_id = json.at("run_id").get<std::string>();
   record.evaluated_id = json.at("evaluated_id").get<std::string>();
-  record.evaluated_by = json.at("evaluated_by").get<std::string>();
-  record.wall_seconds = json.at("wall_seconds").get<double>();
-  record.cpu_seconds = json.at("cpu_seconds").get<double>();
-  record.peak_memory_bytes = json.at("peak_memory_bytes").get<std::int64_t>();
+  record.evaluated_by = ValuesFromJson(json.at("evaluated_by"));
+  record.cost = {MeasuredNumber(json.at("wall_seconds")),
+                 MeasuredNumber(json.at("cpu_seconds")),
+                 MeasuredNumber(json.at("peak_memory_bytes"))};
   record.host = json.at("host").get<std::string>();
   record.started = json.at("started").get<std::string>();
   record.ended = json.at("ended").get<std::string>();
   record.identity = json.at("identity").get<std::string>();
+  record.identity_parts = ValuesFromJson(json.value("identity_parts", Json()));
   record.figures = FiguresFromJson(json.at("figures"));
   return record;
 }
@@ -96,7 +117,10 @@ std::string TaskRecord::Error() const {
 std::optional<TaskRecord> ReadTaskRecord(const std::string& folder) try {
   const Json json = ReadJsonOrNull(RecordPath(folder));
   if (!json.is_object()) return std::nullopt;
-  return RecordFromJson(json);
+  TaskRecord record = RecordFromJson(json);
+  const bool own =
+      record.task.name == std::filesystem::path(folder).filename().string();
+  return own ? std::optional(std::move(record)) : std::nullopt;
 } catch (const InputError&) {
   return std::nullopt;
 } catch (const nlohmann::json::exception&) {
@@ -110,12 +134,19 @@ void WriteTaskRecord(const std::string& folder, const TaskRecord& record) {
 }
 
 std::string TimeText() {
-  const std::time_t now = std::time(nullptr);
+  using std::chrono::milliseconds;
+  const auto since_epoch =
+      std::chrono::duration_cast<milliseconds>(
+          std::chrono::system_clock::now().time_since_epoch())
+          .count();
+  const std::time_t seconds = since_epoch / 1000;
   std::tm parts = {};
-  gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
+  gmtime_r(&seconds, &parts);
+  char text[32], end[16];
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%S", &parts);
+  std::snprintf(end, sizeof(end), ".%03dZ",
+                static_cast<int>(since_epoch % 1000));
+  return std::string(text) + end;
 }
 
 std::string HostName() {

@@ -1,13 +1,14 @@
 #ifndef SPLITFUSION_LIB_EXPERIMENT_TASK_RECORD_H_
 #define SPLITFUSION_LIB_EXPERIMENT_TASK_RECORD_H_
 
-#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "splitfusion/lib/experiment/figures.h"
 #include "splitfusion/lib/experiment/task.h"
+#include "splitfusion/lib/report/run_identity.h"
 
 namespace splitfusion {
 
@@ -25,6 +26,16 @@ enum class TaskState {
 /// Text in task.json.
 std::string ToString(TaskState state);
 
+/// What a run has used from its first frame to its last; NaN where that was not
+/// measured, as of a run that was killed and went on.
+struct RunCost {
+  double wall_seconds = std::numeric_limits<double>::quiet_NaN();  ///< Clock.
+  /// User and system, of all threads.
+  double cpu_seconds = std::numeric_limits<double>::quiet_NaN();
+  /// Largest resident size.
+  double peak_memory_bytes = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// What was done for a task: task.json of its folder.
 struct TaskRecord {
   Task task;                              ///< What was to be done.
@@ -32,24 +43,24 @@ struct TaskRecord {
   int attempts = 0;                       ///< How often it was started.
   int exit_code = 0;                      ///< Of what failed, or 0.
   std::vector<std::string> last_lines;    ///< Of what failed, on stderr.
-  std::string reason;                  ///< Why it was done again; may be empty.
-  std::string run_id;                  ///< Of the result that counts.
-  std::string evaluated_id;            ///< Run that evaluation.json is about.
-  std::string evaluated_by;            ///< Its ground truth and flags.
-  double wall_seconds = 0;             ///< Of the run that counts.
-  double cpu_seconds = 0;              ///< Of the run that counts.
-  std::int64_t peak_memory_bytes = 0;  ///< Of the run that counts.
-  std::string host;                    ///< That worked on it last.
-  std::string started;                 ///< UTC, ISO 8601.
-  std::string ended;                   ///< The same; empty while it is at work.
-  std::string identity;                ///< Of the run that counts.
-  Figures figures;                     ///< Of a recorded one.
+  std::string reason;          ///< Why it was done again; may be empty.
+  std::string run_id;          ///< Of the result that counts.
+  std::string evaluated_id;    ///< Run that evaluation.json is about.
+  NamedValues evaluated_by;    ///< See EvaluationParts().
+  RunCost cost;                ///< Of the run that counts.
+  std::string host;            ///< That worked on it last.
+  std::string started;         ///< UTC, ISO 8601.
+  std::string ended;           ///< The same; empty while it is at work.
+  std::string identity;        ///< Of the run that counts.
+  NamedValues identity_parts;  ///< Of a recorded one.
+  Figures figures;             ///< Of a recorded one.
 
   /// The last of `last_lines`; empty if there is none.
   std::string Error() const;
 };
 
-/// Reads FOLDER/task.json; empty if it is missing or damaged.
+/// Reads FOLDER/task.json; empty if it is missing or damaged, or of a task of
+/// another name: a folder that was copied is not a further run.
 std::optional<TaskRecord> ReadTaskRecord(const std::string& folder);
 
 /// Writes FOLDER/task.json.
@@ -57,7 +68,7 @@ std::optional<TaskRecord> ReadTaskRecord(const std::string& folder);
 /// @throw InputError if it cannot be written.
 void WriteTaskRecord(const std::string& folder, const TaskRecord& record);
 
-/// Now, UTC, as 2026-01-31T12:00:00Z.
+/// Now, UTC, as 2026-01-31T12:00:00.000Z.
 std::string TimeText();
 
 /// Name of this machine.

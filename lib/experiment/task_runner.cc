@@ -6,6 +6,7 @@
 #include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/experiment/run_state.h"
+#include "splitfusion/lib/experiment/task_evaluation.h"
 
 namespace splitfusion {
 namespace {
@@ -25,17 +26,44 @@ bool HasEnded(TaskState state) {
          state == TaskState::kUnevaluated || state == TaskState::kRecorded;
 }
 
-/// Ground truth and flags of an evaluation.
-std::string EvaluationText(const Task& task) {
-  return task.ground_truth + "; " + SettingsText(task.evaluate);
+/// Why a finished run cannot be kept, whatever sf_run says; empty if it can.
+std::string DamageOf(const std::string& run) try {
+  ReadFigures(run, /*evaluated=*/false);
+  return "";
+} catch (const InputError& error) {
+  return error.what();
 }
 
-/// Whether a run directory has an evaluation that can be read.
-bool HasEvaluation(const std::string& run) try {
-  ReadFigures(run, /*evaluated=*/true);
-  return true;
-} catch (const InputError&) {
-  return false;
+/// Why the evaluation of a finished run has to be done again; empty if it
+/// stands.
+std::string StaleEvaluation(const TaskRecord& record, const std::string& run_id,
+                            const NamedValues& parts, const std::string& run) {
+  if (record.evaluated_id != run_id) return "was not finished";
+  const std::string changes = Differences(record.evaluated_by, parts);
+  if (!changes.empty()) return changes;
+  try {
+    ReadFigures(run, /*evaluated=*/true);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+/// What is known of what a run has used, where its last part has ended.
+RunCost CostOf(const ChildResult& child, const RunMarker& marker) {
+  if (!marker.resumed_at.empty()) return {};
+  return {child.wall_seconds, child.cpu_seconds,
+          static_cast<double>(child.peak_memory_bytes)};
+}
+
+/// Why a run was not kept, which it was before.
+std::string ReasonOf(const RunState& before, const RunState& after,
+                     const std::string& damage) {
+  if (!before.IsComplete()) return "";
+  if (!damage.empty()) return damage;
+  const std::string changes =
+      Differences(before.marker->identity, after.marker->identity);
+  return changes.empty() ? "--overwrite" : changes;
 }
 
 void Fail(TaskState state, int exit_code, std::vector<std::string> last_lines,
@@ -46,14 +74,6 @@ void Fail(TaskState state, int exit_code, std::vector<std::string> last_lines,
 }
 
 }  // namespace
-
-std::string DamageOf(const std::string& run) try {
-  ReadFigures(run, /*evaluated=*/false);
-  const RunState state = ReadRunState(run);
-  return state.marker ? FindMissing(*state.marker, run) : state.damage;
-} catch (const InputError& error) {
-  return error.what();
-}
 
 TaskRunner::TaskRunner(ExperimentFolder folder, const RunCommand& command,
                        TaskRunnerOptions options, RowFile rows,
@@ -68,12 +88,12 @@ TaskResult TaskRunner::Run(const Task& task, int known_attempts) const {
   const std::string folder = folder_.TaskFolder(task.name);
   MakeFolder(folder);
   TaskResult result;
+  TaskRecord& record = result.record;
   const auto lock = DirectoryLock::TryAcquire(folder_.Lock(task.name));
-  TaskRecord record = ReadTaskRecord(folder).value_or(TaskRecord());
+  record = ReadTaskRecord(folder).value_or(TaskRecord());
   record.task = task;
   if (!lock) {
     result.passed_over = true;
-    result.record = record;
     return result;
   }
   const bool done_meanwhile =
@@ -82,12 +102,11 @@ TaskResult TaskRunner::Run(const Task& task, int known_attempts) const {
       options_.keep_failed && record.state == TaskState::kFailed;
   if (done_meanwhile || keeps_failure) {
     result.kept = record.state != TaskState::kFailed;
-    result.record = record;
     return result;
   }
   if (TakeRecorded(&record)) {
     result.kept = true;
-  } else if (Reconstruct(&record, &result) && Evaluate(&record)) {
+  } else if (Reconstruct(&result) && Evaluate(&result)) {
     record.state = TaskState::kComplete;
     record.exit_code = 0;
     record.last_lines.clear();
@@ -95,7 +114,6 @@ TaskResult TaskRunner::Run(const Task& task, int known_attempts) const {
   result.stopped = record.state == TaskState::kStarted;
   record.ended = TimeText();
   WriteTaskRecord(folder, record);
-  result.record = record;
   return result;
 }
 
@@ -106,13 +124,20 @@ bool TaskRunner::TakeRecorded(TaskRecord* record) const try {
   if (options_.overwrite || has_run || (rows_.empty() && !was_recorded)) {
     return false;
   }
-  const std::string identity = command_.Ask(task).Hash();
-  if (was_recorded && record->identity == identity) return true;
-  const RowFile::Row* row = rows_.Find(identity, task.sequence);
+  const RunIdentity identity = command_.Ask(task);
+  const NamedValues evaluation = EvaluationParts(task);
+  const bool same =
+      record->identity == identity.Hash() && record->evaluated_by == evaluation;
+  if (was_recorded && same) return true;
+  const RowFile::Row* row =
+      rows_.Find(RowKey(identity.Hash(), evaluation), task.sequence);
   if (row == nullptr) return false;
-  record->identity = identity;
+  record->identity = identity.Hash();
+  record->identity_parts = identity.parts;
+  record->evaluated_by = evaluation;
   record->figures = row->figures;
-  record->wall_seconds = row->seconds;
+  record->cost = RunCost();
+  record->cost.wall_seconds = row->seconds;
   record->state = TaskState::kRecorded;
   record->last_lines.clear();
   record->exit_code = 0;
@@ -121,52 +146,54 @@ bool TaskRunner::TakeRecorded(TaskRecord* record) const try {
   return false;  // Running it tells why.
 }
 
-bool TaskRunner::Reconstruct(TaskRecord* record, TaskResult* result) const {
-  const Task& task = record->task;
-  const std::string folder = folder_.TaskFolder(task.name);
-  const std::string run = folder_.Run(task.name);
+ChildResult TaskRunner::CallRun(const Task& task, bool keep) const {
+  const fs::path log = fs::path(folder_.TaskFolder(task.name)) / "run";
+  try {
+    return RunChild(command_.Run(task, folder_.Run(task.name), keep),
+                    log.string(), stop_, options_.limits);
+  } catch (const InputError& error) {
+    ChildResult refused;
+    refused.exit_code = 2;
+    refused.last_lines = {error.what()};
+    return refused;
+  }
+}
+
+bool TaskRunner::Reconstruct(TaskResult* result) const {
+  TaskRecord& record = result->record;
+  const std::string run = folder_.Run(record.task.name);
   const RunState before = ReadRunState(run);
   const bool was_complete = before.IsComplete() &&
-                            before.Id() == record->run_id &&
-                            (record->state == TaskState::kComplete ||
-                             record->state == TaskState::kUnevaluated ||
-                             record->state == TaskState::kChecking);
+                            before.Id() == record.run_id &&
+                            (record.state == TaskState::kComplete ||
+                             record.state == TaskState::kUnevaluated ||
+                             record.state == TaskState::kChecking);
   const std::string damage = before.IsComplete() ? DamageOf(run) : "";
-  record->state = was_complete ? TaskState::kChecking : TaskState::kStarted;
-  ++record->attempts;
-  record->host = HostName();
-  record->started = TimeText();
-  record->ended.clear();
-  WriteTaskRecord(folder, *record);
-  ChildResult child;
-  try {
-    const bool keep = !options_.overwrite && damage.empty();
-    child =
-        RunChild(command_.Run(task, run, keep),
-                 (fs::path(folder) / "run").string(), stop_, options_.limits);
-  } catch (const InputError& error) {
-    child.exit_code = 2;
-    child.last_lines = {error.what()};
-  }
-  if (!Accept(child, record)) return false;
+  record.state = was_complete ? TaskState::kChecking : TaskState::kStarted;
+  ++record.attempts;
+  record.host = HostName();
+  record.started = TimeText();
+  record.ended.clear();
+  WriteTaskRecord(folder_.TaskFolder(record.task.name), record);
+  const bool keep = !options_.overwrite && damage.empty();
+  const ChildResult child = CallRun(record.task, keep);
+  if (!Accept(child, &record)) return false;
   const RunState after = ReadRunState(run);
   result->kept = before.IsComplete() && before.Id() == after.Id();
   if (!result->kept) {
-    record->wall_seconds = child.wall_seconds;
-    record->cpu_seconds =
-        !after.marker->resumed_at.empty() ? 0 : child.cpu_seconds;
-    record->peak_memory_bytes = child.peak_memory_bytes;
-    record->reason.clear();
-    if (before.IsComplete()) {
-      record->reason = damage.empty() ? Differences(before.marker->identity,
-                                                    after.marker->identity)
-                                      : damage;
-      if (record->reason.empty()) record->reason = "--overwrite";
-    }
+    record.cost = CostOf(child, *after.marker);
+    record.reason = ReasonOf(before, after, damage);
+  } else if (record.run_id != after.Id()) {
+    record.cost = RunCost();  // It ended when nobody looked any more.
   }
-  record->run_id = after.Id();
-  record->identity = after.marker->identity.Hash();
-  return true;
+  record.run_id = after.Id();
+  record.identity = after.marker->identity.Hash();
+  const std::string changes =
+      command_.ChangesSincePlanned(record.task, after.marker->identity);
+  if (changes.empty()) return true;
+  Fail(TaskState::kFailed, 1,
+       {"changed while the experiment went on: " + changes}, &record);
+  return false;
 }
 
 bool TaskRunner::Accept(const ChildResult& child, TaskRecord* record) const {
@@ -182,39 +209,41 @@ bool TaskRunner::Accept(const ChildResult& child, TaskRecord* record) const {
   return false;
 }
 
-bool TaskRunner::Evaluate(TaskRecord* record) const {
-  const Task& task = record->task;
-  if (task.ground_truth.empty()) return true;
-  const std::string run = folder_.Run(task.name);
-  const std::string by = EvaluationText(task);
-  const bool current = !options_.overwrite && record->evaluated_by == by &&
-                       record->evaluated_id == record->run_id &&
-                       HasEvaluation(run);
-  if (current) return true;
-  std::vector<std::string> arguments = {options_.evaluate_program,
-                                        "--run=" + run,
-                                        "--ground_truth=" + task.ground_truth};
-  for (const auto& [key, value] : task.evaluate.entries()) {
-    arguments.push_back("--" + key + "=" + value);
-  }
-  // What an earlier run was worth must not stand for this one's.
-  record->evaluated_id.clear();
-  const ChildResult child =
-      RunChild(arguments,
-               (fs::path(folder_.TaskFolder(task.name)) / "evaluate").string(),
-               stop_, options_.limits);
-  if (child.exit_code == 0 && HasEvaluation(run)) {
-    record->evaluated_by = by;
-    record->evaluated_id = record->run_id;
+ChildResult TaskRunner::CallEvaluate(const Task& task) const {
+  const fs::path log = fs::path(folder_.TaskFolder(task.name)) / "evaluate";
+  return RunChild(
+      EvaluateCommand(options_.evaluate_program, task, folder_.Run(task.name)),
+      log.string(), stop_, options_.limits);
+}
+
+bool TaskRunner::Evaluate(TaskResult* result) const {
+  TaskRecord& record = result->record;
+  if (record.task.ground_truth.empty()) {
+    record.evaluated_by.clear();
     return true;
   }
-  const bool asked = stop_ && stop_() != Stop::kNo;
+  const std::string run = folder_.Run(record.task.name);
+  const NamedValues parts = EvaluationParts(record.task);
+  std::string why = StaleEvaluation(record, record.run_id, parts, run);
+  if (why.empty() && options_.overwrite) why = "--overwrite";
+  if (why.empty()) return true;
+  if (result->kept) result->evaluated_anew = why;
+  // What an earlier run was worth must not stand for this one's.
+  record.evaluated_id.clear();
+  const ChildResult child = CallEvaluate(record.task);
   std::vector<std::string> lines = child.last_lines;
   if (child.exit_code == 0) {
-    lines.push_back("evaluation.json: expected an object 'headline'");
+    record.evaluated_by = parts;
+    record.evaluated_id = record.run_id;
+    const std::string damage =
+        StaleEvaluation(record, record.run_id, parts, run);
+    if (damage.empty()) return true;
+    record.evaluated_id.clear();
+    lines.push_back(damage);
   }
+  const bool asked = stop_ && stop_() != Stop::kNo;
   Fail(asked ? TaskState::kStarted : TaskState::kUnevaluated,
-       child.exit_code == 0 ? 1 : child.exit_code, lines, record);
+       child.exit_code == 0 ? 1 : child.exit_code, lines, &record);
   return false;
 }
 
@@ -232,9 +261,12 @@ std::string WhatIsToDo(const ExperimentFolder& folder,
   const std::string damage = DamageOf(folder.Run(task.name));
   if (!damage.empty()) return "damaged: " + damage;
   try {
-    const std::string why =
-        Differences(state.marker->identity, command.Ask(task));
-    return why.empty() ? "finished" : "changed: " + why;
+    std::string why = Differences(state.marker->identity, command.Ask(task));
+    if (!why.empty()) return "changed: " + why;
+    if (task.ground_truth.empty()) return "finished";
+    why = StaleEvaluation(record.value_or(TaskRecord()), state.Id(),
+                          EvaluationParts(task), folder.Run(task.name));
+    return why.empty() ? "finished" : "to be evaluated: " + why;
   } catch (const InputError& error) {
     return std::string("fails: ") + error.what();
   }

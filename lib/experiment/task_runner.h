@@ -22,10 +22,11 @@ struct TaskRunnerOptions {
 
 /// What became of a task.
 struct TaskResult {
-  bool passed_over = false;  ///< Somebody else works on it.
-  bool kept = false;         ///< Had been finished before.
-  bool stopped = false;      ///< Was asked to stop, and did.
-  TaskRecord record;         ///< As it is now.
+  bool passed_over = false;    ///< Somebody else works on it.
+  bool kept = false;           ///< The run had been finished before.
+  std::string evaluated_anew;  ///< Why a kept run was; empty if it was not.
+  bool stopped = false;        ///< Was asked to stop, and did.
+  TaskRecord record;           ///< As it is now.
 };
 
 /// Runs single tasks of an experiment.
@@ -45,8 +46,10 @@ class TaskRunner {
   TaskResult Run(const Task& task, int known_attempts) const;
 
  private:
-  bool Reconstruct(TaskRecord* record, TaskResult* result) const;
-  bool Evaluate(TaskRecord* record) const;
+  bool Reconstruct(TaskResult* result) const;
+  ChildResult CallRun(const Task& task, bool keep) const;
+  bool Evaluate(TaskResult* result) const;
+  ChildResult CallEvaluate(const Task& task) const;
   bool TakeRecorded(TaskRecord* record) const;
   bool Accept(const ChildResult& child, TaskRecord* record) const;
 
@@ -60,9 +63,6 @@ class TaskRunner {
 /// What running a task would do: "new", "finished", "changed: WHY" and so on.
 std::string WhatIsToDo(const ExperimentFolder& folder,
                        const RunCommand& command, const Task& task);
-
-/// Why a finished run cannot be kept, whatever sf_run says; empty if it can.
-std::string DamageOf(const std::string& run);
 
 }  // namespace splitfusion
 

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/base/peak_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/report/html_report.h"
@@ -38,6 +40,35 @@ void CutTo(const std::string& path, std::uint64_t size, std::ofstream* stream) {
   stream->close();
   fs::resize_file(path, size);
   Open(path, stream);
+}
+
+/// What was written beside the streams so far, by path relative to `root`, with
+/// sizes. Masks of a network are left out: those of the next frame may be
+/// written at this moment, in another thread.
+std::map<std::string, std::uint64_t> FilesBeside(const std::string& root) {
+  std::map<std::string, std::uint64_t> files;
+  for (const char* name : {"checkpoints", "masks", "pictures", "solver"}) {
+    const std::string folder = (fs::path(root) / name).string();
+    if (!fs::is_directory(folder)) continue;
+    for (const OwnedFile& file : FilesBelow(folder)) {
+      files[std::string(name) + "/" + file.path] = file.bytes;
+    }
+  }
+  return files;
+}
+
+void CheckFilesBeside(const std::string& root,
+                      const std::map<std::string, std::uint64_t>& files) {
+  for (const auto& [path, size] : files) {
+    const std::string file = (fs::path(root) / path).string();
+    std::error_code error;
+    if (fs::file_size(file, error) < size || error) {
+      throw InputError(file +
+                       ": is missing or shorter than at the "
+                       "checkpoint: expected " +
+                       std::to_string(size) + " bytes");
+    }
+  }
 }
 
 void Flush(const std::string& path, std::ofstream* stream) {
@@ -120,6 +151,9 @@ void RunDirectory::Serialize(Archive* archive) {
     (*archive)(size);
     if constexpr (Archive::kReads) CutTo(path, size, stream);
   }
+  auto files = FilesBeside(paths_.root());
+  (*archive)(files);
+  if constexpr (Archive::kReads) CheckFilesBeside(paths_.root(), files);
 }
 
 template void RunDirectory::Serialize(ArchiveWriter*);

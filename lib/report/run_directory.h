@@ -49,7 +49,8 @@ class RunDirectory {
   /// Saves or restores what was reported so far, see lib/base/archive.h. The
   /// streams are cut to what they held then.
   ///
-  /// @throw InputError if a stream holds less than it did.
+  /// @throw InputError if a stream holds less than it did, or a mask, a picture
+  ///     or another file that lay there then is missing or shorter.
   template <typename Archive>
   void Serialize(Archive* archive);
 

@@ -150,8 +150,8 @@ void RunFolder::Lock() {
   LockHolder holder;
   lock_ = DirectoryLock::TryAcquire(paths_.Lock(), &holder);
   if (lock_) return;
-  throw InputError(root_ + ": " + holder.ToString() +
-                   " works on it: expected a folder of one's own");
+  throw InputError(root_ + ": is held by " + holder.ToString() +
+                   ": expected a folder of one's own");
 }
 
 void RunFolder::CheckHeld() const {
@@ -176,10 +176,9 @@ void RunFolder::Decide(const RunFolderOptions& options) {
                      "expected a new or empty folder, or a run to overwrite");
   }
   const bool can_resume = options.resume && begun && begun->IsSame(identity_);
-  const bool finished = published &&
-                        published->status == RunStatus::kComplete &&
-                        published->IsSame(identity_) &&
-                        FindMissing(*published, root_).empty();
+  const bool finished =
+      published && published->status == RunStatus::kComplete &&
+      published->IsSame(identity_) && FindMissing(*published, root_).empty();
   if (finished && (!options.overwrite || options.keep_same)) {
     marker_ = *published;
     start_ = RunStart::kFinished;

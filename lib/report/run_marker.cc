@@ -177,7 +177,7 @@ std::string FindMissing(const RunMarker& marker, const std::string& folder) {
   const RunPaths paths(folder);
   for (const auto& [path, file] : marker.files) {
     const fs::path whole = fs::path(folder) / path;
-    if (whole == paths.Evaluation() || whole == paths.HtmlReport()) continue;
+    if (whole == paths.Evaluation()) continue;
     std::error_code error;
     const std::uintmax_t bytes = fs::file_size(whole, error);
     if (error) return path + " is missing";

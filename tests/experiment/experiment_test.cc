@@ -86,6 +86,11 @@ TEST_F(ExperimentTest, SaysWhatIsWrong) {
   expect(R"({"sequences": ["data/room"], "set": {"x": [1]}})", "set.x");
   expect(R"({"sequences": ["data/room"], "repeat": 0})", "repeat");
   expect(R"({"sequences": ["data/room"], "rows": [{}]})", "'name'");
+  expect("{\n\"repeat\": 1,,\n}", "line 2");
+  const std::string file = folder_ / "e.json: ";
+  expect(R"({"repeat": 0})", file + "repeat = 0");
+  expect(R"({"grid": {"x": [4, "4.0"]}})", file + "grid = 'x=4.0'");
+  expect(R"({"evaluate": {"run": "x"}})", file + "evaluate = run");
   ExpectInputError([] { ReadExperiment("none.json"); }, "none.json");
 }
 

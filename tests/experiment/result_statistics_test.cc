@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <regex>
 #include <sstream>
 
 #include "splitfusion/lib/experiment/printed_table.h"
 #include "splitfusion/lib/experiment/row_file.h"
 #include "support/expect_input_error.h"
+#include "support/repository.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
@@ -27,7 +31,7 @@ ResultRow Row(const std::string& sequence, const std::string& weight,
   row.values = {weight};
   row.status = "complete";
   row.figures.At("ate_m") = ate;
-  row.wall_seconds = 2;
+  row.cost.wall_seconds = 2;
   return row;
 }
 
@@ -122,6 +126,23 @@ TEST(PrintedTable, ShowsWhatVariesAndIsKnown) {
       table, CompareWithBaseline(table, "weight=4"), "weight=4", 80);
   EXPECT_THAT(differences, HasSubstr("+4.00+-1.00"));
   EXPECT_THAT(differences, HasSubstr("(all)"));
+}
+
+TEST(PrintedTable, HeadingsAreDocumented) {
+  std::ifstream stream(RepositoryRoot() / "docs/experiments.md");
+  if (!stream) GTEST_SKIP() << "not built in the repository";
+  const std::string page{std::istreambuf_iterator<char>(stream), {}};
+  ResultTable table = Sample();
+  table.rows[0].figures.values.fill(1);
+  const std::string text = PrintedSummary(table, GroupResults(table), 1000);
+  const std::string heads = text.substr(0, text.find('\n'));
+  const std::regex between("  +");
+  std::sregex_token_iterator head(heads.begin(), heads.end(), between, -1), end;
+  int count = 0;
+  for (std::advance(head, 2); head != end; ++head, ++count) {
+    EXPECT_THAT(page, HasSubstr("`" + head->str() + "`"));
+  }
+  EXPECT_EQ(count, 17);  // The number of runs, and all figures.
 }
 
 TEST(PrintedTable, IsNeverWiderThanTheTerminal) {

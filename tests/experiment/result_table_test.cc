@@ -11,7 +11,6 @@
 #include "experiment/sweep_fixture.h"
 #include "splitfusion/lib/experiment/foreign_results.h"
 #include "splitfusion/lib/experiment/result_files.h"
-#include "splitfusion/lib/report/run_marker.h"
 #include "support/expect_input_error.h"
 #include "support/repository.h"
 
@@ -54,14 +53,23 @@ TEST_F(SweepTest, DamagedFilesAreTheStatusOfTheirRow) {
 TEST_F(SweepTest, AFileThatIsNotAsItWasWrittenIsDamage) {
   AddSequence("room");
   Sweep();
-  const std::string run = folder_ / InRun(0, "");
-  RunMarker marker = *ReadRunMarker(run);
-  marker.files = ListRunFiles(run, {});
-  WriteRunMarker(run, marker);
+  folder_.Write(InRun(0, "trajectory.txt"), "1 2 3");
+  ListFiles(0);
   EXPECT_EQ(Table().rows[0].status, "complete");
+  folder_.Write(InRun(0, "trajectory.txt"), "1 2");
+  EXPECT_EQ(Table().rows[0].status, "damaged: trajectory.txt was changed");
   folder_.Write(InRun(0, "summary.json"), R"({"frames": 11})");
   EXPECT_EQ(Table().rows[0].status,
             "damaged: summary.json: not as it was written");
+}
+
+TEST_F(SweepTest, ACopiedTaskIsNoFurtherRepeat) {
+  AddSequence("room", "true");
+  Sweep();
+  const fs::path task = folder_ / InRun(0, "..");
+  const fs::path copy = folder_ / "out/tasks/copy_of_room";
+  fs::copy(fs::canonical(task), copy, fs::copy_options::recursive);
+  EXPECT_EQ(Table().rows.size(), 1u);
 }
 
 TEST_F(SweepTest, LostRecordsAndRunsLeaveTheirRows) {
@@ -161,6 +169,8 @@ TEST_F(SweepTest, OtherSystemsAreRows) {
   EXPECT_NEAR(table.rows[1].figures.At("ate_m"), 0, 1e-9);
   EXPECT_TRUE(std::isnan(table.rows[1].figures.At("ghosts")));
   ExpectInputError([] { ParseForeignResults("room=a.txt"); }, "NAME:SEQUENCE");
+  ExpectInputError([] { ParseForeignResults("a:room=x; a:room=y"); },
+                   "one result of a system on a sequence");
   ExpectInputError(
       [&] {
         AddForeignResults(folder, {{"x", "none", estimate, ""}});

@@ -34,7 +34,10 @@ TEST(Settings, SaysWhatIsWrong) {
   ExpectInputError([] { ParseSettings("a=1; a=2", "set"); }, "twice");
   ExpectInputError([] { ParseSettings("--a=1", "set"); }, "flag's name");
   ExpectInputError([] { ParseSettings("a=\"1", "set"); }, "quote");
-  ExpectInputError([] { ParseGrid("a=1,1", "grid"); }, "twice");
+  for (const char* grid : {"a=", "a=1,,2", "a=1,"}) {
+    ExpectInputError([&] { ParseGrid(grid, "grid"); }, "separated by commas");
+  }
+  EXPECT_EQ(ParseGrid("a=1,\"\"", "grid")[0].values.back(), "");
   ExpectInputError([] { ParseGrid("a=", "grid"); }, "values");
 }
 

@@ -10,6 +10,7 @@
 #include "splitfusion/lib/experiment/result_table.h"
 #include "splitfusion/lib/experiment/sequence_list.h"
 #include "splitfusion/lib/experiment/sweep.h"
+#include "splitfusion/lib/report/run_marker.h"
 #include "support/stub_programs.h"
 #include "support/temporary_folder.h"
 
@@ -43,6 +44,22 @@ class SweepTest : public testing::Test {
   /// Path of a file of the n-th row's run.
   std::string InRun(std::size_t row, const std::string& name) const {
     return "out/tasks/" + Table().rows[row].task.name + "/run/" + name;
+  }
+
+  /// Lists the files of the n-th row's run in its marker, as sf_run does.
+  void ListFiles(std::size_t row) const {
+    std::string list;
+    for (const auto& [path, file] :
+         ListRunFiles(folder_ / InRun(row, ""), {})) {
+      list += (list.empty() ? "" : ", ") + ("{\"path\": \"" + path) +
+              "\", \"bytes\": " + std::to_string(file.bytes) +
+              ", \"xxh3\": \"" + file.xxh3 + "\"}";
+    }
+    const std::string marker = InRun(row, "run.json");
+    std::string text = folder_.Read(marker);
+    // The stub knows its marker by the text of the rest.
+    text.insert(text.find("\"files\": [") + 10, list);
+    folder_.Write(marker, text);
   }
 
   /// How often sf_run computed something of a sequence.

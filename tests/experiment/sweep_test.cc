@@ -8,6 +8,7 @@
 #include <set>
 
 #include "experiment/sweep_fixture.h"
+#include "splitfusion/lib/experiment/repeats.h"
 #include "splitfusion/lib/report/run_marker.h"
 #include "support/expect_input_error.h"
 
@@ -48,8 +49,13 @@ TEST_F(SweepTest, FinishedRunsAndTheirEvaluationsAreKept) {
   Sweep();
   EXPECT_EQ(Starts("room"), 1);
   EXPECT_EQ(Lines("data/room/evaluations.txt"), 1);
+  ListFiles(0);
   fs::remove(folder_ / InRun(0, "evaluation.json"));
+  EXPECT_EQ(DryRun(experiment_, options_)[0].second,
+            "to be evaluated: evaluation.json: missing");
   Sweep();
+  EXPECT_THAT(folder_.Read("out/progress.log"),
+              HasSubstr("kept, evaluated again: evaluation.json: missing"));
   EXPECT_EQ(Starts("room"), 1);
   EXPECT_EQ(Lines("data/room/evaluations.txt"), 2);
   options_.runner.overwrite = true;
@@ -150,7 +156,8 @@ TEST_F(SweepTest, ARunThatCannotBeJudgedSaysSo) {
 TEST_F(SweepTest, UnknownKeysAreRefusedBeforeAnythingRuns) {
   AddSequence("room");
   experiment_.grid = ParseGrid("x=1,2; bogus=1", "grid");
-  ExpectInputError([&] { Sweep(); }, "unknown flag bogus");
+  ExpectInputError([&] { Sweep(); },
+                   "options \"x=1; bogus=1\": stub: unknown flag bogus");
   EXPECT_EQ(Starts("room"), 0);
   EXPECT_FALSE(folder_.Has("out"));
 }
@@ -187,6 +194,42 @@ TEST_F(SweepTest, RepeatsMoveTheVoxelsByMillionths) {
   const auto again =
       ShiftVoxels({{"object_voxel", "0.004"}, {"background_voxel", "0.01"}}, 2);
   EXPECT_EQ(sizes.count(std::stod(*again.Find("object_voxel"))), 1u);
+}
+
+TEST_F(SweepTest, WhatWasNotMeasuredFromTheFirstFrameIsUnknown) {
+  AddSequence("resumed");
+  AddSequence("room");
+  Sweep();
+  const ResultTable table = Table();
+  EXPECT_TRUE(std::isnan(table.rows[0].cost.wall_seconds));
+  EXPECT_TRUE(std::isnan(table.rows[0].figures.At("peak_memory_bytes")));
+  EXPECT_GT(table.rows[1].cost.wall_seconds, 0);
+  EXPECT_GT(table.rows[1].figures.At("cpu_seconds_per_frame"), 0);
+  EXPECT_THAT(folder_.Read(InRun(0, "../task.json")),
+              HasSubstr("\"wall_seconds\": null"));
+  // A run that ended after its sf_batch was killed.
+  const std::string record = InRun(1, "../task.json");
+  std::string text = folder_.Read(record);
+  text.replace(text.find("\"run_id\": \"") + 11, 3, "");
+  folder_.Write(record, text);
+  Sweep();
+  EXPECT_EQ(Starts("room"), 1);
+  EXPECT_TRUE(std::isnan(Table().rows[1].cost.wall_seconds));
+}
+
+TEST_F(SweepTest, AFailureWithoutAWordHasAReason) {
+  AddSequence("mute");
+  EXPECT_EQ(Sweep().failed, 1);
+  EXPECT_EQ(Table().rows[0].error, "exit code 4, without a word");
+}
+
+TEST_F(SweepTest, FlagsOfTheEvaluationAreCheckedBeforeAnythingRuns) {
+  AddSequence("room", "true");
+  experiment_.evaluate.Set("nope", "1");
+  ExpectInputError([&] { Sweep(); },
+                   "evaluate \"nope=1\": stub: unknown flag nope");
+  ExpectInputError([&] { DryRun(experiment_, options_); }, "nope");
+  EXPECT_EQ(Starts("room"), 0);
 }
 
 TEST_F(SweepTest, LimitsEndARunThatIsRecorded) {
@@ -288,6 +331,8 @@ TEST_F(SweepTest, RefusesAFolderOfSomethingElse) {
   folder_.Write("out/results.csv", "mine");
   ExpectInputError([&] { Sweep(); }, "results.csv");
   EXPECT_EQ(folder_.Read("out/results.csv"), "mine");
+  ExpectInputError([&] { Table(); }, "--output");
+  folder_.Write("out/tasks/mine/notes.txt", "mine");
   ExpectInputError([&] { Table(); }, "--output");
 }
 

@@ -88,7 +88,8 @@ TEST_F(RunFolderTest, AnotherIdentityIsRefusedAndSaysWhatDiffers) {
 TEST_F(RunFolderTest, AFinishedRunThatLacksAFileIsNotFinished) {
   Finish("8", "first");
   fs::remove_all(root() + "/surfaces");
-  ExpectInputError([&] { Open("8"); }, "surfaces/000_first/mesh.ply is missing");
+  ExpectInputError([&] { Open("8"); },
+                   "surfaces/000_first/mesh.ply is missing");
   {
     const RunFolder again = Open("8", kKeepSame);
     EXPECT_EQ(again.start(), RunStart::kFresh);
@@ -99,6 +100,16 @@ TEST_F(RunFolderTest, AFinishedRunThatLacksAFileIsNotFinished) {
   AddRunFile(root(), "evaluation.json");
   fs::remove(root() + "/evaluation.json");  // It can be made again.
   EXPECT_EQ(Open("8").start(), RunStart::kFinished);
+}
+
+TEST_F(RunFolderTest, AReportIsAFileAsAllOthers) {
+  {
+    RunFolder run = Open("8");
+    WriteBegun("report.html", "report");
+    EXPECT_TRUE(run.Publish(RunStatus::kComplete));
+  }
+  folder_.Write("run/report.html", "changed");
+  EXPECT_EQ(Open("8", kKeepSame).start(), RunStart::kFresh);
 }
 
 TEST_F(RunFolderTest, OtherOutputsAreNotTheSameRun) {
@@ -297,7 +308,10 @@ TEST_F(RunFolderTest, KilledAnywhereWhileItIsPutInPlaceLosesNothing) {
 
 TEST_F(RunFolderTest, OneAtATime) {
   const RunFolder run = Open("8");
-  ExpectInputError([&] { Open("8"); }, "works on it");
+  ExpectInputError([&] { Open("8"); }, "is held by process ");
+  folder_.Write("other/lock", "");
+  ExpectInputError([&] { RunFolder(folder_ / "other", Weight("8"), {}); },
+                   "is held by a lock without a name");
 }
 
 TEST_F(RunFolderTest, NoticesThatItsFolderIsGone) {

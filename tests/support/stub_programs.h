@@ -10,10 +10,11 @@ namespace splitfusion {
 
 /// Shell script that takes the flags of sf_run and writes what it writes, with
 /// figures that its options decide. It refuses a flag `bogus`. Names of
-/// sequences say more: `bad` fails, `slow` takes a moment, `endless` runs until
-/// SIGINT or, like `busy`, `greedy` and `still`, until it is killed.
+/// sequences say more: `bad` fails, `mute` does so without a word, `resumed`
+/// says that it went on from a checkpoint, `slow` takes a moment, `endless`
+/// runs until SIGINT or, like `busy`, `greedy` and `still`, until it is killed.
 inline constexpr const char* kStubRun = R"(#!/bin/sh
-object=0.005; background=0.01; parts=; keep=; ask=
+object=0.005; background=0.01; parts=; keep=; ask=; resumed=
 escaped() { printf '%s' "$1" | sed 's/"/\\"/g'; }
 for argument in "$@"; do
   value=${argument#*=}; key=${argument%%=*}; key=${key#--}
@@ -30,7 +31,7 @@ for argument in "$@"; do
     *) parts="$parts, \"$key\": \"$(escaped "$value")\"" ;;
   esac
 done
-parts="{\"input\": \"${sequence##*/}\", \"object_voxel\": \"$object\", \"background_voxel\": \"$background\"$parts}"
+parts="{\"input.frames\": \"${sequence##*/}\", \"object_voxel\": \"$object\", \"background_voxel\": \"$background\"$parts}"
 if [ -n "$ask" ]; then
   echo "{\"identity\": \"x\", \"identity_parts\": $parts, \"outputs\": {}}"
   exit 0
@@ -43,8 +44,10 @@ fi
 echo "$$" >> "$sequence/starts.txt"
 case "$sequence" in
   *bad) echo "warning" >&2; echo "bad/rgb.txt: cannot be opened" >&2; exit 2 ;;
+  *mute) exit 4 ;;
   *crash) kill -SEGV $$ ;;
   *slow) sleep 0.1 ;;
+  *resumed) resumed=4 ;;
   *endless) trap 'echo "interrupted after 4 frames" >&2; exit 1' INT
             touch "$output/started"; while :; do sleep 0.05; done ;;
   *still) touch "$output/started"; exec sleep 100 ;;
@@ -58,7 +61,7 @@ echo "{\"frames\": 10, \"lost_frames\": 1, \"peak_memory_bytes\": 1000000,
 echo "$number" > "$output/number.txt"
 cat > "$output/.run.json" <<END
 {"format_version": 1, "tool": "sf_run", "id": "$(date +%s%N)$$",
- "status": "complete", "error": "", "resumed_at": [], "identity": "x",
+ "status": "complete", "error": "", "resumed_at": [$resumed], "identity": "x",
  "identity_parts": $parts,
  "outputs": {}, "files": []}
 END
@@ -71,6 +74,8 @@ for argument in "$@"; do
   case "$argument" in
     --run=*) run=${argument#*=} ;;
     --ground_truth=*) truth=${argument#*=} ;;
+    --check_only) exit 0 ;;
+    --nope=*) echo "stub: unknown flag nope" >&2; exit 2 ;;
   esac
 done
 grep -q broken "$truth/groundtruth.txt" && { echo "no pose" >&2; exit 2; }

@@ -167,7 +167,7 @@ TEST_F(Resume, TwoRunsDoNotMix) {
   const ProgramResult second = Run("run", "--overwrite --max_frames=3");
   if (first.Runs()) {
     EXPECT_EQ(second.exit_code, 2);
-    EXPECT_THAT(second.errors, HasSubstr("works on it"));
+    EXPECT_THAT(second.errors, HasSubstr("is held by process"));
   }
   EXPECT_EQ(first.Wait().exit_code, 0);
   EXPECT_EQ(Summary("run")["frames"], 24);
@@ -197,6 +197,18 @@ TEST_F(Resume, ACheckpointThatIsDamagedIsNotTrusted) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.errors, HasSubstr("begins anew"));
   ExpectSameResult("whole", "run");
+}
+
+TEST_F(Resume, FilesThatAreGoneSinceTheCheckpointAreMadeAgain) {
+  ASSERT_EQ(Run("whole", kOptions).exit_code, 0);
+  for (const std::string folder : {"masks", "pictures"}) {
+    ASSERT_TRUE(Stop(folder, kOptions, 12, SIGKILL));
+    fs::remove_all(folder_ / (folder + "/unfinished/" + folder));
+    const ProgramResult result = Run(folder, kOptions);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.errors, HasSubstr("begins anew: "));
+    ExpectSameResult("whole", folder);
+  }
 }
 
 TEST_F(Resume, DamagedResultsAreNotEvaluated) {

@@ -154,6 +154,70 @@ TEST_F(SfBatch, SaysWhatItExpects) {
       2);
 }
 
+TEST_F(SfBatch, RefusesBeforeTheFirstRunWhatTheTablesWouldRefuse) {
+  AddSequence("room");
+  const std::string arguments = Arguments("room", "out") + " --grid=x=1,2";
+  for (const std::string flag :
+       {"--baseline=x=3", "--baseline=none", "--foreign=a:hall=t.txt",
+        "--foreign='a:room=t.txt; a:room=u.txt'", "--evaluate=nope=1"}) {
+    for (const std::string dry : {"", " --dry_run"}) {
+      const ProgramResult result =
+          RunProgram("sf_batch", arguments + " " + flag + dry);
+      EXPECT_EQ(result.exit_code, 2) << flag;
+      EXPECT_FALSE(folder_.Has("out")) << flag;
+    }
+  }
+  const std::string file = folder_.Write("e.json", R"({"baseline": "x=3"})");
+  EXPECT_THAT(
+      RunProgram("sf_batch", arguments + " --experiment=" + file).errors,
+      HasSubstr("e.json: baseline = x=3"));
+  EXPECT_EQ(RunProgram("sf_batch", arguments + " --baseline=x=2").exit_code, 0);
+  const std::string table = folder_.Read("out/results.csv");
+  EXPECT_EQ(RunProgram("sf_batch",
+                       "collect --baseline=none --output=" + (folder_ / "out"))
+                .exit_code,
+            2);
+  EXPECT_EQ(folder_.Read("out/results.csv"), table);
+}
+
+TEST_F(SfBatch, CollectLeavesTablesOfOthers) {
+  folder_.Write("out/tasks/notes.txt", "mine");
+  folder_.Write("out/results.csv", "mine");
+  const ProgramResult result =
+      RunProgram("sf_batch", "collect --output=" + (folder_ / "out"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, HasSubstr("holds no experiment"));
+  EXPECT_EQ(folder_.Read("out/results.csv"), "mine");
+}
+
+TEST_F(SfBatch, CollectSaysThatRepeatsAreOutdated) {
+  AddSequence("room");
+  const std::string arguments = Arguments("room", "out") + " --set=flagfile=" +
+                                folder_.Write("a.flags", "weight 4");
+  ASSERT_EQ(RunProgram("sf_batch", arguments + " --repeat=4").exit_code, 0);
+  folder_.Write("a.flags", "weight 64");
+  ASSERT_EQ(RunProgram("sf_batch", arguments + " --repeat=2").exit_code, 0);
+  const ProgramResult result =
+      RunProgram("sf_batch", "collect --output=" + (folder_ / "out"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("2 of 4 runs are outdated"));
+  EXPECT_THAT(result.errors, HasSubstr("flags weight 4 -> weight 64"));
+  EXPECT_THAT(folder_.Read("out/summary.csv"), HasSubstr("\nroom,2,4,"));
+  EXPECT_THAT(
+      RunProgram("sf_batch", "status --output=" + (folder_ / "out")).output,
+      HasSubstr("4 runs, 2 complete, 2 outdated\n"));
+}
+
+TEST_F(SfBatch, SaysThatAFileOfRowsIsNew) {
+  AddSequence("room");
+  ASSERT_EQ(RunProgram("sf_batch", Arguments("room", "out")).exit_code, 0);
+  const std::string collect = "collect --output=" + (folder_ / "out") +
+                              " --rows_csv=" + (folder_ / "rows.csv");
+  EXPECT_THAT(RunProgram("sf_batch", collect).errors,
+              HasSubstr("rows.csv: is a new file"));
+  EXPECT_EQ(RunProgram("sf_batch", collect).errors, "");
+}
+
 TEST_F(SfBatch, ADryRunPrintsTheTasks) {
   AddSequence("room");
   const ProgramResult result = RunProgram(
@@ -239,6 +303,27 @@ TEST_F(SfBatch, SweepsTheRealProgram) {
                                  " --grid=terms.arap.wieght=4,8");
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.errors, HasSubstr("wieght"));
+  const std::filesystem::path task =
+      std::filesystem::directory_iterator(folder_ / "out/tasks")->path();
+  std::filesystem::remove(task / "run/evaluation.json");
+  RunProgram("sf_batch", arguments);
+  EXPECT_THAT(folder_.Read("out/progress.log"),
+              HasSubstr("kept, evaluated again: evaluation.json: missing"));
+  EXPECT_EQ(folder_.Read("out/results.csv"), csv);
+  std::filesystem::resize_file(task / "run/trajectory.txt", 10);
+  EXPECT_THAT(
+      RunProgram("sf_batch", "status --output=" + (folder_ / "out")).output,
+      HasSubstr("damaged: trajectory.txt was changed"));
+  for (const std::string option :
+       {"pictures_every", "warped_every", "threads", "checkpoint_every"}) {
+    const ProgramResult refused =
+        RunProgram("sf_batch", "run --sequences=" + (folder_ / "sequence") +
+                                   " --output=" + (folder_ / "none") +
+                                   " --set=" + option + "=-7");
+    EXPECT_EQ(refused.exit_code, 2) << option;
+    EXPECT_THAT(refused.errors, HasSubstr(option));
+  }
+  EXPECT_FALSE(folder_.Has("none"));
 }
 
 }  // namespace
