@@ -66,10 +66,10 @@ struct EdgeResidual {
   }
 };
 
-/// weight / N * 2 rho: Ceres halves it.
+/// weight / N * 2 rho: Ceres halves it. `total`: N.
 std::unique_ptr<ceres::LossFunction> Weighted(ceres::LossFunction* loss,
-                                              double weight, int count) {
-  return std::make_unique<ceres::ScaledLoss>(loss, 2 * weight / count,
+                                              double weight, double total) {
+  return std::make_unique<ceres::ScaledLoss>(loss, 2 * weight / total,
                                              ceres::TAKE_OWNERSHIP);
 }
 
@@ -125,9 +125,10 @@ std::vector<PlainResidual> PlainEdges(const EnergyScene& scene) {
 
 std::unique_ptr<ceres::LossFunction> PlainPointLoss(const EnergyScene& scene) {
   const TermOptions options = OptionsOf("point_to_plane");
+  double total = 0;
+  for (const Correspondence& c : scene.correspondences) total += c.weight;
   return Weighted(new ceres::TukeyLoss(options.scale * kUnitsPerMetre),
-                  options.weight,
-                  static_cast<int>(scene.correspondences.size()));
+                  options.weight, total);
 }
 
 std::unique_ptr<ceres::LossFunction> PlainEdgeLoss(const EnergyScene& scene) {

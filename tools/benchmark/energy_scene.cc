@@ -42,12 +42,14 @@ class UserTerm : public EnergyTerm {
                     ResidualSink* sink) const override {
     std::vector<const ModelSample*> samples;
     std::vector<UserPointToPlane> functors;
+    double total = 0;
     for (const Correspondence& c : input.correspondences) {
       samples.push_back(&c.model);
       functors.push_back({c.warped_normal.cast<double>(),
                           c.target.cast<double>(), std::sqrt(c.weight)});
+      total += c.weight;
     }
-    sink->AddWarpedPoints(samples, functors);
+    sink->AddWarpedPoints(samples, functors, total);
   }
 };
 
