@@ -9,7 +9,7 @@
 #include "splitfusion/lib/render/model_map.h"
 #include "splitfusion/lib/render/rasterizer.h"
 #include "splitfusion/lib/render/ray_caster.h"
-#include "splitfusion/lib/split/surface_splitter.h"
+#include "splitfusion/lib/split/surface_prediction.h"
 #include "splitfusion/pipelines/surface.h"
 
 namespace splitfusion {

@@ -5,7 +5,7 @@
 
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/render/ray_caster.h"
-#include "splitfusion/lib/split/surface_splitter.h"
+#include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/pipelines/surface.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "splitfusion/lib/energy/block_kernels.h"
+#include "splitfusion/lib/energy/warped_points.h"
 
 namespace splitfusion {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "splitfusion/lib/energy/residual_scaling.h"
-#include "splitfusion/lib/energy/warp_functor.h"
+#include "splitfusion/lib/energy/twist.h"
 
 namespace splitfusion {
 

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc/detail/gcgraph.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/point_map.h"
 
 namespace splitfusion {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/geometry/point_map.h"
+#include "splitfusion/lib/split/graph_cut.h"
 
 namespace splitfusion {
 namespace {

@@ -5,10 +5,11 @@
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/base/option_list.h"
-#include "splitfusion/lib/split/graph_cut.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 
 namespace splitfusion {
+
+struct GraphCutOptions;
 
 /// What the live depth says about the predicted surface at a pixel.
 enum class Agreement : std::uint8_t {
