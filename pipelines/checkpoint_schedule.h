@@ -22,13 +22,13 @@ class CheckpointSchedule {
 
   /// The state was saved, which took `seconds`.
   void Saved(double seconds) {
-    constexpr double kShare = 0.02;
+    constexpr double kShare = 0.02;  // Speed.
     frames_ = 0;
     interval_ = std::max(kShortest, seconds / kShare);
   }
 
  private:
-  static constexpr double kShortest = 10;  // Seconds.
+  static constexpr double kShortest = 10;  // Speed: seconds.
 
   int every_;
   int frames_ = 0;

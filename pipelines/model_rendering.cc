@@ -72,7 +72,7 @@ ModelGrey SmoothGrey(const cv::Mat_<cv::Vec3b>& color, const cv::Mat& mask,
   mask.convertTo(inside, CV_32F, 1.0 / 255);
   cv::GaussianBlur(inside, inside, cv::Size(), sigma);
   cv::GaussianBlur(grey.fine, grey.coarse, cv::Size(), sigma);
-  grey.coarse /= cv::max(inside, 1e-3f);
+  grey.coarse /= cv::max(inside, 1e-3f);  // Maths.
   return grey;
 }
 

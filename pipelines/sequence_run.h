@@ -27,9 +27,9 @@ struct OtherState {
 /// What a run writes besides its report, and how its state is kept.
 struct SequenceRunOptions {
   WarpedOutput warped;            ///< Warped meshes.
-  int pictures_every = 10;        ///< Of every n-th frame; 0 = none.
+  int pictures_every = 10;        ///< Flag: of every n-th frame; 0 = none.
   bool write_masks = true;        ///< Refined masks of every frame.
-  int checkpoint_every = 0;       ///< See CheckpointSchedule.
+  int checkpoint_every = 0;       ///< Flag: see CheckpointSchedule.
   bool keep_checkpoints = false;  ///< All of them, for OtherState.
   bool reads_ahead = true;        ///< The next frame, in a thread of its own.
   OtherState from;                ///< Where to begin.

@@ -8,7 +8,7 @@ namespace splitfusion {
 
 /// Which warped meshes are written.
 struct WarpedOutput {
-  int every = 10;      ///< Of every n-th frame; 0 = none.
+  int every = 10;      ///< Flag: of every n-th frame; 0 = none.
   bool whole = false;  ///< With what was seen only later.
 };
 

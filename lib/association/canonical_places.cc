@@ -53,7 +53,7 @@ class LiveTiles {
   }
 
  private:
-  static constexpr int kTile = 16;  // Pixels.
+  static constexpr int kTile = 16;  // Speed: pixels.
 
   static cv::Vec2f RangeOf(const LiveView& live, int surface, int row,
                            int column) {

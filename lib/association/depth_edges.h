@@ -15,7 +15,7 @@ inline float EdgeJump(float depth, int step, float focal_length) {
 }
 
 /// Pixels beyond the image that MarkEdges() reads, on every side.
-constexpr int kEdgeBorder = 2;
+constexpr int kEdgeBorder = 2;  // Layout.
 
 /// Marks the pixels of a row that are next to a jump of depth, by 255; others
 /// become 0. One and two pixels away: edges come with a column of holes.

@@ -43,7 +43,7 @@ GreyLevel MakeGreyLevel(const cv::Mat& grey, double sigma) {
   GreyLevel level;
   cv::GaussianBlur(grey, level.value, cv::Size(), sigma);
   cv::Mat by_u, by_v;
-  constexpr double kSobelScale = 1.0 / 8;
+  constexpr double kSobelScale = 1.0 / 8;  // Maths.
   cv::Sobel(level.value, by_u, CV_32F, 1, 0, 3, kSobelScale);
   cv::Sobel(level.value, by_v, CV_32F, 0, 1, 3, kSobelScale);
   cv::merge(std::vector<cv::Mat>{by_u, by_v}, level.gradient);

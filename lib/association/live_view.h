@@ -47,7 +47,7 @@ inline float DepthConfidence(float depth) {
 
 /// Grey value of a BGR colour, 0..1.
 inline float Intensity(const cv::Vec3b& bgr) {
-  return (0.114f * bgr[0] + 0.587f * bgr[1] + 0.299f * bgr[2]) / 255;
+  return (0.114f * bgr[0] + 0.587f * bgr[1] + 0.299f * bgr[2]) / 255;  // Unit.
 }
 
 /// Builds points, normals, confidence and edges of a frame. Labels and

@@ -14,10 +14,10 @@ namespace splitfusion {
 namespace {
 
 /// Blocks of a task.
-constexpr int kGrain = 64;
+constexpr int kGrain = 64;  // Speed.
 
 /// The places of a group's nodes in its own sums.
-constexpr std::array<int, kMaxSkinningNodes> kInOrder = {0, 1, 2, 3,
+constexpr std::array<int, kMaxSkinningNodes> kInOrder = {0, 1, 2, 3,  // Layout.
                                                          4, 5, 6, 7};
 
 }  // namespace

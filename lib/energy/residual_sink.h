@@ -17,7 +17,7 @@ class WarpedPointsCache;
 
 /// Scale s of the energy: residuals are compared with 1 cm, so that a weight
 /// means the same in every frame and on every surface.
-constexpr double kResidualUnit = 0.01;  // Metres.
+constexpr double kResidualUnit = 0.01;  // Unit: metres.
 
 /// The residuals that one term has added.
 struct TermResiduals {

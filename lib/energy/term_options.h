@@ -11,10 +11,10 @@ namespace splitfusion {
 struct TermOptions {
   /// Registered name of the term.
   std::string name;
-  double weight = 1;  ///< Of E_term; dimensionless.
+  double weight = 1;  ///< Flag: of E_term; dimensionless.
   /// Robust loss of every residual vector.
   LossKind loss = LossKind::kTrivial;
-  double scale = 0.01;  ///< Inlier width of the loss, metres.
+  double scale = 0.01;  ///< Flag: inlier width of the loss, metres.
 };
 
 }  // namespace splitfusion

@@ -4,7 +4,7 @@
 namespace splitfusion {
 
 /// Size of a node's parameter block: the twist [omega (rad), tau (m)].
-constexpr int kTwistSize = 6;
+constexpr int kTwistSize = 6;  // Layout.
 
 }  // namespace splitfusion
 

@@ -16,9 +16,9 @@ namespace splitfusion {
 namespace {
 
 /// Weights are cut as integers, so that the result is exact.
-constexpr float kUnit = 1000.0f;
+constexpr float kUnit = 1000.0f;  // Unit.
 
-constexpr int kDirections = 4;  // The other four are these reversed.
+constexpr int kDirections = 4;  // Layout: the other four are these reversed.
 
 using Weights = cv::Mat_<cv::Vec4i>;  // Per pixel: edges to the 4 offsets.
 
@@ -107,8 +107,8 @@ class GridGraph {
   }
 
  private:
-  static constexpr int kNone = -1;        // No depth.
-  static constexpr int kBackground = -2;  // Certain.
+  static constexpr int kNone = -1;        // Layout: no depth.
+  static constexpr int kBackground = -2;  // Layout: certain.
 
   void NumberNodes() {
     for (int v = 0; v < node_.rows; ++v) {
@@ -138,7 +138,7 @@ class GridGraph {
         (node_(p) < 0 && node_(q) < 0)) {
       return 0;
     }
-    const float length = direction < 2 ? 1.0f : 1.41421356f;
+    const float length = direction < 2 ? 1.0f : 1.41421356f;  // Maths.
     return static_cast<int>(kUnit * weight(origin + p, origin + q) / length);
   }
 

@@ -9,7 +9,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr std::array<std::array<int, 2>, 4> kSteps = {
+constexpr std::array<std::array<int, 2>, 4> kSteps = {  // Layout.
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
 bool Continuous(float a, float b) {
