@@ -1,5 +1,7 @@
 #include "splitfusion/pipelines/exposure.h"
 
+#include "splitfusion/lib/geometry/depth_comparison.h"
+
 namespace splitfusion {
 
 double Exposure(const MeshRendering& rendering, int stride,
@@ -8,7 +10,7 @@ double Exposure(const MeshRendering& rendering, int stride,
   if (found == rendering.alone.end()) return 1;
   const cv::Mat_<float>& model = found->second;
   const int step = kAloneStride * stride;
-  constexpr float kInFront = 0.1f;  // Metres.
+  constexpr DepthTolerance<float> kInFront = {0.1f, 0};
   int seen = 0;
   int hidden = 0;
   for (int v = 0; v < model.rows && v * step < live.depth.rows; ++v) {
@@ -18,7 +20,8 @@ double Exposure(const MeshRendering& rendering, int stride,
       if (live.labels(v * step, u * step) == surface) {
         ++seen;
       } else {
-        hidden += depth < model(v, u) - kInFront;
+        hidden += ClassifyDepth(depth, model(v, u), kInFront.At(depth)) ==
+                  DepthState::kOccluded;
       }
     }
   }

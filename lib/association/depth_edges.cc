@@ -2,8 +2,6 @@
 
 #include "splitfusion/lib/association/depth_edges.h"
 
-#include <cmath>
-
 #include "splitfusion/lib/base/vector_clones.h"
 
 namespace splitfusion {
@@ -19,7 +17,7 @@ void MarkEdges(const float* depth, int stride, int width, float focal_length,
       for (const int offset : offsets) {
         const float other = depth[u + offset];
         const float jump = EdgeJump(other < z ? other : z, step, focal_length);
-        is_edge |= (other > 0) & (std::abs(other - z) > jump);
+        is_edge |= (other > 0) & IsDepthJump(z, other, jump);
       }
     }
     edges[u] = is_edge & (z > 0) ? 255 : 0;

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "splitfusion/lib/geometry/depth_noise.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
 
@@ -11,7 +11,9 @@ namespace splitfusion {
 /// or a surface seen at 79 degrees (tan = 5) gives. Metres; the focal length in
 /// pixels.
 inline float EdgeJump(float depth, int step, float focal_length) {
-  return 0.005f + 3 * DepthSigma(depth) + 5 * depth * step / focal_length;
+  constexpr DepthTolerance<float> kNoise = {0.005f, 3};
+  constexpr float kSlope = 5;
+  return kNoise.At(depth) + kSlope * depth * step / focal_length;
 }
 
 /// Pixels beyond the image that MarkEdges() reads, on every side.

@@ -7,16 +7,19 @@
 #include <cstdlib>
 #include <vector>
 
+#include "splitfusion/lib/geometry/depth_comparison.h"
+
 namespace splitfusion {
 namespace {
 
-constexpr int kColumns = 80;        // Of the grid that is searched.
-constexpr int kMaxColumns = 40;     // Steps to either side.
-constexpr int kMaxRows = 12;        // Steps up and down.
-constexpr int kMaxLayers = 5;       // Steps nearer and farther.
-constexpr float kLayer = 0.08f;     // Metres a step.
-constexpr float kTolerance = 0.1f;  // Metres between model and live.
+constexpr int kColumns = 80;     // Of the grid that is searched.
+constexpr int kMaxColumns = 40;  // Steps to either side.
+constexpr int kMaxRows = 12;     // Steps up and down.
+constexpr int kMaxLayers = 5;    // Steps nearer and farther.
+constexpr float kLayer = 0.08f;  // Metres a step.
 constexpr double kMinExplained = 0.3;
+/// Between model and live.
+constexpr DepthTolerance<float> kTolerance = {0.1f, 0};
 
 /// A depth of a coarse grid.
 struct GridPoint {
@@ -61,6 +64,10 @@ float At(const cv::Mat_<float>& grid, int v, int u) {
   return inside ? grid(v, u) : 0.0f;
 }
 
+DepthState Compare(float live, float model) {
+  return ClassifyDepth(live, model, kTolerance.At(live));
+}
+
 /// What is searched through: the coarse grids.
 struct Search {
   cv::Mat_<float> model;
@@ -74,13 +81,13 @@ struct Search {
     Shift shift{du, dv, layer};
     for (const GridPoint& p : own) {
       const float z = At(model, p.v - dv, p.u - du);
-      shift.hits +=
-          z > 0 && std::abs(z + kLayer * layer - p.depth) < kTolerance;
+      shift.hits += z > 0 && Compare(p.depth, z + kLayer * layer) ==
+                                 DepthState::kObserved;
     }
     int violations = 0;
     for (const GridPoint& p : visible) {
       const float z = At(live, p.v + dv, p.u + du);
-      violations += z > p.depth + kLayer * layer + kTolerance;
+      violations += Compare(z, p.depth + kLayer * layer) == DepthState::kFree;
     }
     const double way = std::abs(du) + std::abs(dv) + std::abs(layer);
     shift.score = shift.hits - 0.5 * violations - 0.002 * way * own.size();

@@ -31,7 +31,8 @@ cv::Mat_<float> WithoutPinholes(const cv::Mat_<float>& depth,
         sum += z, ++count;
         low = std::min(low, z), high = std::max(high, z);
       }
-      if (count >= 6 && high - low < EdgeJump(low, 2, focal_length)) {
+      if (count >= 6 &&
+          !IsDepthJump(low, high, EdgeJump(low, 2, focal_length))) {
         filled(v, u) = sum / count;
       }
     }

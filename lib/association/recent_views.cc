@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "splitfusion/lib/geometry/depth_noise.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
 namespace {
 
 /// How far from the live depth a point may be and lie on it, metres: three
 /// sigma of the noise, and what bends between two nodes.
-double Tolerance(double depth) { return 0.02 + 3 * DepthSigma(depth); }
+constexpr DepthTolerance<double> kTolerance = {0.02, 3};
 
 /// The pixels nearest to a point that are looked at, every second one: near a
 /// silhouette it may miss the surface by a few.
@@ -50,11 +50,12 @@ Sighting RecentViews::LookAround(const View& view, int surface,
   for (int y = std::max(v - kRadius, 0); y <= bottom; y += kStep) {
     for (int x = std::max(u - kRadius, 0); x <= right; x += kStep) {
       const double depth = view.depth(y, x);
-      if (!(depth > 0)) continue;
+      const DepthState state = ClassifyDepth(depth, z, kTolerance.At(depth));
+      if (state == DepthState::kUnmeasured) continue;
       any_depth = true;
-      if (depth - z > Tolerance(depth)) continue;
+      if (state == DepthState::kFree) continue;
       all_behind = false;
-      if (z - depth <= Tolerance(depth) && view.labels(y, x) == surface) {
+      if (state == DepthState::kObserved && view.labels(y, x) == surface) {
         return Sighting::kSeen;
       }
     }

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc/detail/gcgraph.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/geometry/point_map.h"
 
 namespace splitfusion {
@@ -37,9 +38,9 @@ class EdgeWeight {
     const float distance =
         std::max({0.25f * std::abs(step[2]), PlaneDistance(np, step),
                   PlaneDistance(nq, step)});
-    const float scale = static_cast<float>(
-        options_.step_factor * DepthSigma(points_.points(p)[2]) +
-        options_.step_offset);
+    const DepthTolerance<double> step_scale = {options_.step_offset,
+                                               options_.step_factor};
+    const auto scale = static_cast<float>(step_scale.At(points_.points(p)[2]));
     const float ratio = distance / scale;
     if (ratio > 3) return 0;
     const float exponent = ratio * ratio + NormalTerm(np, nq, step);

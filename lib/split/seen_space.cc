@@ -6,13 +6,16 @@
 #include <cstddef>
 #include <opencv2/imgproc.hpp>
 
+#include "splitfusion/lib/geometry/depth_comparison.h"
+
 namespace splitfusion {
 namespace {
 
-constexpr int kInterval = 4;         // Frames.
-constexpr std::size_t kViews = 12;   // Remembered at most.
-constexpr int kWindow = 5;           // Pixels: room for errors of the pose.
-constexpr float kClearance = 0.08f;  // Metres, beside the noise.
+constexpr int kInterval = 4;        // Frames.
+constexpr std::size_t kViews = 12;  // Remembered at most.
+constexpr int kWindow = 5;          // Pixels: room for errors of the pose.
+/// Between the seen depth and a point in front of it; both are noisy.
+constexpr DepthTolerance<float> kClearance = {0.08f, 3};
 
 }  // namespace
 
@@ -52,8 +55,10 @@ bool SeenSpace::LookedThrough(const View& view,
   }
   const int u = static_cast<int>(x), v = static_cast<int>(y);
   const float seen = view.depth(v, u);
-  const float noise = 3 * (DepthSigma(seen) + DepthSigma(point.z()));
-  return seen > point.z() + kClearance + noise;
+  const DepthTolerance<float> tolerance = {kClearance.At(point.z()),
+                                           kClearance.sigmas};
+  return ClassifyDepth(seen, point.z(), tolerance.At(seen)) ==
+         DepthState::kFree;
 }
 
 cv::Mat_<uchar> SeenSpace::WasEmpty(const cv::Mat_<uchar>& mask,
