@@ -9,12 +9,12 @@
 
 #include "splitfusion/lib/base/read_ahead.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/report/checkpoint_schedule.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
+#include "splitfusion/lib/report/surface_output.h"
 #include "splitfusion/lib/sequence/tum_reader.h"
-#include "splitfusion/pipelines/checkpoint_schedule.h"
 #include "splitfusion/pipelines/split_fusion.h"
-#include "splitfusion/pipelines/surface_output.h"
 
 namespace splitfusion {
 

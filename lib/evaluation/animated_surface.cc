@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "splitfusion/lib/deformation/known_triangles.h"
+#include "splitfusion/lib/visibility/known_triangles.h"
 
 namespace splitfusion {
 
