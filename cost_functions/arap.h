@@ -25,7 +25,7 @@ namespace splitfusion {
 /// paper: docs/paper_map.md#eq-6
 struct Arap {
   /// Residuals of one edge.
-  static constexpr int kResiduals = 3;
+  static constexpr int kResiduals = 3;  // Layout.
   Eigen::Vector3d center_i;  ///< c_i = g_i + t_i, camera frame, metres.
   Eigen::Vector3d center_j;  ///< c_j = g_j + t_j.
   Eigen::Vector3d edge;      ///< q, in the camera frame, metres.

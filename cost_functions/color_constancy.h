@@ -25,7 +25,7 @@ namespace splitfusion {
 /// Residual: 1, metres * sqrt(confidence). Zero for motions along the view ray.
 struct ColorConstancy {
   /// Residuals of one point.
-  static constexpr int kResiduals = 1;
+  static constexpr int kResiduals = 1;  // Layout.
   /// m: metres that a grey value difference of 1 counts for.
   static constexpr double kMetresPerIntensity = 0.05;
   PinholeCamera camera;      ///< Live camera.

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "splitfusion/cost_functions/arap.h"
-#include "splitfusion/lib/association/seen_nodes.h"
 #include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/visibility/seen_nodes.h"
 
 namespace splitfusion {
 

@@ -23,9 +23,9 @@ namespace splitfusion {
 /// tangent plane; unchanged if camera frame, point and plane move together.
 struct PointToPlane {
   /// Residuals of one point.
-  static constexpr int kResiduals = 1;
-  Eigen::Vector3d normal;  ///< n_m, camera frame, unit length.
-  Eigen::Vector3d target;  ///< v_t, camera frame, metres.
+  static constexpr int kResiduals = 1;  // Layout.
+  Eigen::Vector3d normal;               ///< n_m, camera frame, unit length.
+  Eigen::Vector3d target;               ///< v_t, camera frame, metres.
   /// sqrt(c) of the confidence.
   double sqrt_confidence = 1;
 

@@ -14,6 +14,7 @@
 
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
+#include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/energy/solver.h"
 
 namespace {

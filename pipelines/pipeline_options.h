@@ -4,9 +4,9 @@
 #include <string>
 
 #include "splitfusion/lib/energy/solver.h"
+#include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/ray_caster.h"
-#include "splitfusion/lib/split/surface_splitter.h"
-#include "splitfusion/pipelines/surface.h"
+#include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "splitfusion/lib/association/live_view.h"
+#include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/sequence/frame.h"
 

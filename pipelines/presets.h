@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/pipelines/split_fusion.h"
+#include "splitfusion/pipelines/pipeline_options.h"
 
 namespace splitfusion {
 

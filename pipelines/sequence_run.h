@@ -9,12 +9,12 @@
 
 #include "splitfusion/lib/base/read_ahead.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/report/checkpoint_schedule.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
+#include "splitfusion/lib/report/surface_output.h"
 #include "splitfusion/lib/sequence/tum_reader.h"
-#include "splitfusion/pipelines/checkpoint_schedule.h"
 #include "splitfusion/pipelines/split_fusion.h"
-#include "splitfusion/pipelines/surface_output.h"
 
 namespace splitfusion {
 
@@ -27,9 +27,9 @@ struct OtherState {
 /// What a run writes besides its report, and how its state is kept.
 struct SequenceRunOptions {
   WarpedOutput warped;            ///< Warped meshes.
-  int pictures_every = 10;        ///< Of every n-th frame; 0 = none.
+  int pictures_every = 10;        ///< Flag: of every n-th frame; 0 = none.
   bool write_masks = true;        ///< Refined masks of every frame.
-  int checkpoint_every = 0;       ///< See CheckpointSchedule.
+  int checkpoint_every = 0;       ///< Flag: see CheckpointSchedule.
   bool keep_checkpoints = false;  ///< All of them, for OtherState.
   bool reads_ahead = true;        ///< The next frame, in a thread of its own.
   OtherState from;                ///< Where to begin.

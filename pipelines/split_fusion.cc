@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "splitfusion/lib/association/image_shift.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
-#include "splitfusion/pipelines/exposure.h"
+#include "splitfusion/lib/tracking/image_shift.h"
+#include "splitfusion/lib/visibility/exposure.h"
 
 namespace splitfusion {
 
@@ -152,8 +152,10 @@ std::vector<SurfaceReport> SplitFusion::LookAtObjects() {
 }
 
 bool SplitFusion::IsHidden(SurfaceReport* report) {
-  const double exposure =
-      Exposure(rendering_, options_.render_stride, live_, report->id);
+  const auto alone = rendering_.alone.find(report->id);
+  if (alone == rendering_.alone.end()) return false;
+  const double exposure = Exposure(
+      alone->second, kAloneStride * options_.render_stride, live_, report->id);
   constexpr double kBack = 1.2;  // More must be seen to come back.
   const bool was_hidden = hidden_.count(report->id) > 0;
   if (exposure >=

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/model/surface.h"
+#include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/split/surface_splitter.h"
-#include "splitfusion/pipelines/model_rendering.h"
-#include "splitfusion/pipelines/motion_predictor.h"
+#include "splitfusion/lib/tracking/motion_predictor.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
-#include "splitfusion/pipelines/surface.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
@@ -63,7 +63,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 2;
+  static constexpr std::uint32_t kStateVersion = 2;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "splitfusion/lib/association/seen_nodes.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/visibility/seen_nodes.h"
 
 namespace splitfusion {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/association/live_view.h"
 #include "splitfusion/lib/association/projective_association.h"
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/solver.h"
+#include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/report/frame_report.h"
 
 namespace splitfusion {

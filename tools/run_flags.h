@@ -6,7 +6,7 @@
 #include <string>
 
 #include "splitfusion/lib/sequence/tum_reader.h"
-#include "splitfusion/pipelines/split_fusion.h"
+#include "splitfusion/pipelines/pipeline_options.h"
 
 namespace splitfusion {
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
 namespace {
@@ -27,7 +28,8 @@ enum class Outcome : std::uint8_t {
 };
 
 /// Distances up to so many sigma of the depth noise pass the gate.
-constexpr float kNoiseFactor = 3.0f;
+constexpr DepthTolerance<float> kNoise = {0, 3};
+
 Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
 class Associator {
@@ -59,14 +61,14 @@ class Associator {
     if (live_.labels(v, u) != surface_ || live_.uncertain(v, u) != 0) {
       const float depth = live_.depth(v, u);
       return live_.labels(v, u) != surface_ &&
-                     depth + kNoiseFactor * DepthSigma(depth) < point.z()
+                     ClassifyDepth(depth, point.z(), kNoise.At(depth)) ==
+                         DepthState::kOccluded
                  ? Outcome::kOccluded
                  : Outcome::kOtherSurface;
     }
     if (live_.edges(v, u) != 0) return Outcome::kDepthEdge;
     out->target = ToEigen(live_.map.points(v, u));
-    const float gate =
-        std::max(distance_, kNoiseFactor * DepthSigma(out->target.z()));
+    const float gate = std::max(distance_, kNoise.At(out->target.z()));
     if ((point - out->target).squaredNorm() > gate * gate) {
       return Outcome::kDistance;
     }

@@ -6,7 +6,7 @@
 
 #include "splitfusion/lib/association/association_counts.h"
 #include "splitfusion/lib/association/correspondence.h"
-#include "splitfusion/lib/association/live_view.h"
+#include "splitfusion/lib/frame/live_view.h"
 
 namespace splitfusion {
 

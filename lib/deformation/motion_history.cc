@@ -22,7 +22,7 @@ namespace {
 constexpr char kMagic[] = "SFMOTN02";
 /// Version without a checksum at the end.
 constexpr char kFirstMagic[] = "SFMOTN01";
-constexpr std::size_t kMagicBytes = 8;
+constexpr std::size_t kMagicBytes = 8;  // Format.
 /// R row by row, then t.
 using StoredMotion = std::array<float, 12>;
 
@@ -140,7 +140,7 @@ void CheckSum(const std::string& path, const std::string& bytes) {
 /// Whether a motion can be one: finite, and its matrix a rotation as far as
 /// floats keep it.
 bool IsRigid(const NodeMotion& motion) {
-  constexpr double kTolerance = 1e-3;
+  constexpr double kTolerance = 1e-3;  // Maths.
   const Eigen::Matrix3d& r = motion.rotation;
   return motion.translation.allFinite() && r.allFinite() &&
          (r.transpose() * r).isIdentity(kTolerance) && r.determinant() > 0;

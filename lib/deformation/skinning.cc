@@ -12,7 +12,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kMaxCandidates = 128;
+constexpr int kMaxCandidates = 128;  // Speed.
 
 /// The few nearest of the nodes shown to it, nearest first, the lower index
 /// among equals.
@@ -33,7 +33,9 @@ class NearestFew {
 
   /// No node farther than this from a place `distance` away from the point can
   /// be among the few, rounding included.
-  float Reach(float distance) const { return 1.0001f * (reach_ + distance); }
+  float Reach(float distance) const {
+    return 1.0001f * (reach_ + distance);  // Maths.
+  }
 
   float FarthestSquared() const { return entries_[size_ - 1].first; }
   float squared(int i) const { return entries_[i].first; }

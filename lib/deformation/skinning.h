@@ -12,7 +12,7 @@
 namespace splitfusion {
 
 /// Largest K of Eq. 3 that is supported.
-constexpr int kMaxSkinningNodes = 8;
+constexpr int kMaxSkinningNodes = 8;  // Layout.
 
 /// The nodes that carry one point, ascending by index, and their weights of
 /// Eq. 3, which sum to 1.

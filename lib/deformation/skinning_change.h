@@ -19,7 +19,7 @@ class SkinningChange {
   /// after, bit for bit. May be false though it is.
   bool Keeps(const SkinningSupport& support) const {
     return support.nearest >= 0 &&
-           2.001f * support.distance < new_node_[support.nearest] &&
+           2.001f * support.distance < new_node_[support.nearest] &&  // Maths.
            support.reach < first_difference_[support.nearest];
   }
 

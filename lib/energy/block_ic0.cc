@@ -10,7 +10,7 @@ namespace splitfusion {
 namespace {
 
 /// The first raise of the diagonal.
-constexpr double kFirstShift = 1e-3;
+constexpr double kFirstShift = 1e-3;  // Speed.
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kBlock = 36;
+constexpr int kBlock = 36;  // Layout.
 
 // Adds the sums of a pair of rows to `out`: of a and the low half of b, and of
 // the high half of b and c.

@@ -8,15 +8,16 @@
 #include <numeric>
 
 #include "splitfusion/lib/energy/block_kernels.h"
+#include "splitfusion/lib/energy/warped_points.h"
 
 namespace splitfusion {
 namespace {
 
 /// Blocks of a task.
-constexpr int kGrain = 64;
+constexpr int kGrain = 64;  // Speed.
 
 /// The places of a group's nodes in its own sums.
-constexpr std::array<int, kMaxSkinningNodes> kInOrder = {0, 1, 2, 3,
+constexpr std::array<int, kMaxSkinningNodes> kInOrder = {0, 1, 2, 3,  // Layout.
                                                          4, 5, 6, 7};
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "splitfusion/lib/energy/block_pattern.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/energy/term_residuals.h"
+#include "splitfusion/lib/energy/warp_kernels.h"
 
 namespace splitfusion {
 

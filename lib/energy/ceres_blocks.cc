@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "splitfusion/lib/energy/warped_points.h"
+
 namespace splitfusion {
 namespace {
 

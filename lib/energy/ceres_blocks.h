@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/energy/residual_sink.h"
 
 namespace splitfusion {

@@ -14,7 +14,7 @@ namespace splitfusion {
 namespace {
 
 /// Bounds of the diagonal that damping is relative to, as in Ceres.
-constexpr double kMinDiagonal = 1e-6;
+constexpr double kMinDiagonal = 1e-6;  // Maths.
 constexpr double kMaxDiagonal = 1e32;
 
 double MaxNorm(const std::vector<Vector6>& values) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "splitfusion/lib/energy/residual_scaling.h"
-#include "splitfusion/lib/energy/warp_functor.h"
+#include "splitfusion/lib/energy/twist.h"
 
 namespace splitfusion {
 
@@ -76,7 +76,7 @@ class NodeResidualsOf : public NodeResiduals {
  private:
   using Jet6 = ceres::Jet<double, kTwistSize>;
   /// Nodes for which there is room on the stack.
-  static constexpr int kFewNodes = 2;
+  static constexpr int kFewNodes = 2;  // Speed.
 
   static bool DifferentiateFew(const Functor& functor, int count,
                                double const* const* twists, double* residuals,

@@ -1,6 +1,11 @@
 #include "splitfusion/lib/energy/residual_sink.h"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/energy/warped_points.h"
 
 namespace splitfusion {
 
@@ -16,6 +21,12 @@ void ResidualSink::CheckTuples(const std::vector<std::vector<int>>& nodes) {
       throw OptionError("nodes of a residual", text, "different nodes");
     }
   }
+}
+
+const std::vector<int>& ResidualSink::SetPoints(
+    const std::vector<const ModelSample*>& samples) {
+  residuals_.points = cache_->Get(samples);
+  return residuals_.points->source();
 }
 
 ResidualScaling ResidualSink::Scaling() const {

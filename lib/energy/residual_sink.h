@@ -1,34 +1,23 @@
 #ifndef SPLITFUSION_LIB_ENERGY_RESIDUAL_SINK_H_
 #define SPLITFUSION_LIB_ENERGY_RESIDUAL_SINK_H_
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "splitfusion/lib/association/correspondence.h"
 #include "splitfusion/lib/energy/node_residuals.h"
 #include "splitfusion/lib/energy/point_residuals.h"
-#include "splitfusion/lib/energy/robust_loss.h"
-#include "splitfusion/lib/energy/warped_points.h"
+#include "splitfusion/lib/energy/term_options.h"
 
 namespace splitfusion {
 
+struct ModelSample;
+class WarpedPoints;
+class WarpedPointsCache;
+
 /// Scale s of the energy: residuals are compared with 1 cm, so that a weight
 /// means the same in every frame and on every surface.
-constexpr double kResidualUnit = 0.01;  // Metres.
-
-/// Weight and loss of one term, as the command line gives them.
-struct TermOptions {
-  /// Registered name of the term.
-  std::string name;
-  double weight = 1;  ///< Of E_term; dimensionless.
-  /// Robust loss of every residual vector.
-  LossKind loss = LossKind::kTrivial;
-  double scale = 0.01;  ///< Inlier width of the loss, metres.
-};
+constexpr double kResidualUnit = 0.01;  // Unit: metres.
 
 /// The residuals that one term has added.
 struct TermResiduals {
@@ -61,10 +50,9 @@ class ResidualSink {
                        double total = 0) {
     Count(samples.size(), total);
     if (samples.empty()) return;
-    residuals_.points = cache_->Get(samples);
     std::vector<PointFunctor> ordered;
     ordered.reserve(functors.size());
-    for (const int i : residuals_.points->source()) {
+    for (const int i : SetPoints(samples)) {
       ordered.push_back(functors[i]);
     }
     residuals_.of_points = std::make_shared<PointResidualsOf<PointFunctor>>(
@@ -93,6 +81,10 @@ class ResidualSink {
 
  private:
   static void CheckTuples(const std::vector<std::vector<int>>& nodes);
+
+  /// The samples in the order in which their residuals are kept.
+  const std::vector<int>& SetPoints(
+      const std::vector<const ModelSample*>& samples);
 
   void Count(std::size_t vectors, double total) {
     residual_vectors_ = static_cast<int>(vectors);

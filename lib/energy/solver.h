@@ -9,8 +9,11 @@
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/energy/solver_report.h"
 #include "splitfusion/lib/energy/term_registry.h"
+#include "splitfusion/lib/geometry/camera.h"
 
 namespace splitfusion {
+
+struct LiveView;
 
 /// Options of the minimiser; names are Ceres' own.
 struct SolverOptions {

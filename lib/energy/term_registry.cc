@@ -7,6 +7,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/number_text.h"
+#include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
 namespace {

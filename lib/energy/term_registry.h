@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/energy/term_options.h"
 
 namespace splitfusion {
+
+class EnergyTerm;
 
 /// Terms by name. A plain value: make one, register terms, pass it on.
 class TermRegistry {

@@ -2,6 +2,10 @@
 
 #include <utility>
 
+#include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/energy/twist.h"
+#include "splitfusion/lib/energy/warped_points.h"
+
 namespace splitfusion {
 
 std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,

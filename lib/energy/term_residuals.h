@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "splitfusion/lib/energy/residual_sink.h"
 #include "splitfusion/lib/energy/solver.h"
 
 namespace splitfusion {

@@ -12,11 +12,11 @@ namespace {
 
 /// Nodes of a patch. With larger ones iterations get more (24: 24 instead of 18
 /// in the mean of a sequence), with smaller ones the factorisation dearer.
-constexpr int kPatchNodes = 12;
+constexpr int kPatchNodes = 12;  // Speed.
 
 /// What the diagonal of P^T A P is raised by, relative to that of A: a part
 /// that nothing holds has no stiffness there at all but for the damping.
-constexpr double kRaise = 1e-9;
+constexpr double kRaise = 1e-9;  // Maths.
 
 /// By node, those that it shares blocks with: of node i those from begin[i] to
 /// begin[i + 1].

@@ -8,11 +8,9 @@
 
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/energy/twist.h"
 
 namespace splitfusion {
-
-/// Size of a node's parameter block: the twist [omega (rad), tau (m)].
-constexpr int kTwistSize = 6;
 
 /// A node's motion under an increment, without the increment:
 /// exp(omega) q + c + tau with q = R (v - g), c = t + g.

@@ -18,7 +18,7 @@ struct TwistedNode {
 };
 
 /// Points that are warped at a time.
-constexpr int kWarpedChunk = 32;
+constexpr int kWarpedChunk = 32;  // Speed.
 
 /// Points with common nodes. All arrays may be read three numbers too far.
 struct PointChunk {

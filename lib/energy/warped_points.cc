@@ -10,7 +10,7 @@ namespace splitfusion {
 namespace {
 
 /// Numbers past the end that the kernels may read.
-constexpr int kReadTooFar = 3;
+constexpr int kReadTooFar = 3;  // Layout.
 
 /// Nodes of a sample, compact for sorting.
 struct NodeKey {

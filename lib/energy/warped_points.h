@@ -35,7 +35,7 @@ class WarpedPoints {
   };
 
   /// Most points of a group: bounds the memory of one evaluation.
-  static constexpr int kMaxGroupSize = 512;
+  static constexpr int kMaxGroupSize = 512;  // Speed.
 
   /// Sorts the samples; nothing of them is kept.
   explicit WarpedPoints(const std::vector<const ModelSample*>& samples);

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "splitfusion/lib/visibility/known_triangles.h"
+
 namespace splitfusion {
 
 AnimatedSurface::AnimatedSurface(RecordedSurface surface)
@@ -38,6 +40,10 @@ std::vector<Eigen::Vector3f> AnimatedSurface::VerticesAt(int frame) const {
     vertices[i] = warp.WarpPoint(skinnings_[i], surface_.mesh.vertices[i]);
   });
   return vertices;
+}
+
+std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesAt(int frame) const {
+  return KnownTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
 }
 
 TriangleMesh AnimatedSurface::MeshAt(int frame) const {

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/deformation/known_triangles.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
 
@@ -37,9 +36,7 @@ class AnimatedSurface {
 
   /// Triangles of the mesh that are known in a frame (KnownTriangles), which
   /// are all that had been seen by then if the graph has no sightings.
-  std::vector<Eigen::Vector3i> TrianglesAt(int frame) const {
-    return KnownTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
-  }
+  std::vector<Eigen::Vector3i> TrianglesAt(int frame) const;
 
   /// Both of them, as warped/FRAME.ply has them; no normals, no colours.
   TriangleMesh MeshAt(int frame) const;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "splitfusion/lib/evaluation/animated_surface.h"
+
 namespace splitfusion {
 namespace {
 

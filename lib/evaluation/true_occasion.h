@@ -3,13 +3,14 @@
 
 #include <vector>
 
-#include "splitfusion/lib/evaluation/animated_surface.h"
 #include "splitfusion/lib/evaluation/ground_truth.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
 #include "splitfusion/lib/evaluation/surface_error.h"
 #include "splitfusion/lib/geometry/rigid3.h"
 
 namespace splitfusion {
+
+class AnimatedSurface;
 
 /// A true mesh of an instance together with the frame of the run it belongs to.
 struct TrueOccasion {

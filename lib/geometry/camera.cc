@@ -13,7 +13,7 @@ namespace {
 /// Largest |x/z| or |y/z| of a view ray: 79 degrees off the axis, beyond any
 /// lens that is a pinhole. A slip in a calibration file gives far more, and
 /// volumes that no memory holds.
-constexpr double kMaxSlope = 5;
+constexpr double kMaxSlope = 5;  // Format.
 
 /// Intrinsics along one axis of the image.
 void CheckFieldOfView(const std::string& axis, double f, double c, int size) {

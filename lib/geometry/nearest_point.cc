@@ -11,8 +11,8 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kLeafPoints = 8;         // At most.
-constexpr int kParallelPoints = 4096;  // Worth a task.
+constexpr int kLeafPoints = 8;         // Speed: at most.
+constexpr int kParallelPoints = 4096;  // Speed: worth a task.
 
 /// Axis along which the points reach farthest.
 int WidestAxis(const std::vector<Eigen::Vector3f>& points, const int* begin,

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/geometry/window_planes.h"
 
 namespace splitfusion {
@@ -67,9 +68,9 @@ class NormalEstimator {
   /// Difference of depth up to which pixels count, metres; below `z`, so that
   /// those without depth never pass.
   float Gate(float z) const {
-    return std::min(0.9f * z,
-                    static_cast<float>(options_.edge_factor * DepthSigma(z) +
-                                       options_.edge_offset));
+    const DepthTolerance<double> edge = {options_.edge_offset,
+                                         options_.edge_factor};
+    return std::min(0.9f * z, static_cast<float>(edge.At(z)));
   }
 
   const PointMapOptions& options_;

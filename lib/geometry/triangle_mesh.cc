@@ -243,7 +243,7 @@ void WritePly(const std::string& path, const TriangleMesh& mesh,
       Append(&value, 1, &bytes);
     }
   }
-  const std::uint8_t corners = 3;
+  const std::uint8_t corners = 3;  // Format.
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
     Append(&corners, 1, &bytes);
     Append(triangle.data(), 3, &bytes);

@@ -7,8 +7,8 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kLeafSize = 4;
-constexpr int kMaxDepth = 64;
+constexpr int kLeafSize = 4;   // Speed.
+constexpr int kMaxDepth = 64;  // Layout.
 
 using Corners = std::array<Eigen::Vector3f, 3>;
 

@@ -130,7 +130,8 @@ void FitWindowPlanes(const WindowSums& sums, const WindowCenters& centers,
   // n . X = d > 0 points away from the camera: turn it round.
   Lanes length = none;
   for (int i = 0; i < kWindowPixels; ++i) length[i] = -std::sqrt(squared[i]);
-  const auto known = (n >= min_count) & (determinant > 1e-4f * cxx * cyy);
+  const auto known =
+      (n >= min_count) & (determinant > 1e-4f * cxx * cyy);  // Maths.
   Store(known ? a / length : none, normals->x);
   Store(known ? b / length : none, normals->y);
   Store(known ? c / length : none, normals->z);

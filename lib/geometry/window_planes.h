@@ -4,7 +4,7 @@
 namespace splitfusion {
 
 /// Pixels that are summed up at a time.
-constexpr int kWindowPixels = 8;
+constexpr int kWindowPixels = 8;  // Speed.
 
 /// Sums over the pixels around some, of those at about the depth of each: x, y
 /// relative to the pixel in normalised image coordinates, z the inverse depth.

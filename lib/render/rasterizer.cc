@@ -9,7 +9,7 @@ namespace splitfusion {
 namespace {
 
 constexpr float kNearPlane = 0.01f;  // Metres.
-constexpr int kBandHeight = 16;      // Rows rendered by one task.
+constexpr int kBandHeight = 16;      // Speed: rows rendered by one task.
 
 /// A triangle in the image: corners in pixels, inverse depths.
 struct ScreenTriangle {

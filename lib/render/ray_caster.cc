@@ -331,7 +331,7 @@ ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,
   const Cast cast = MakeCast(volume, motion, options);
   const internal::DepthBounds bounds(cast.places, cast.volume.voxel_size,
                                      motion, camera, options);
-  constexpr int kRows = 8;  // Of one task.
+  constexpr int kRows = 8;  // Speed: of one task.
   tbb::parallel_for(0, (camera.height + kRows - 1) / kRows, [&](int task) {
     RowCaster(cast, bounds, motion, task * kRows,
               std::min(camera.height, (task + 1) * kRows), &map)

@@ -7,7 +7,8 @@
 
 #include "splitfusion/lib/association/association_counts.h"
 #include "splitfusion/lib/energy/solver_report.h"
-#include "splitfusion/lib/split/surface_splitter.h"
+#include "splitfusion/lib/segmentation/label_table.h"
+#include "splitfusion/lib/split/split_decision.h"
 
 namespace splitfusion {
 

@@ -7,31 +7,29 @@
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/geometry/point_map.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
 namespace {
 
-/// -1 nearer, 0 alike, 1 farther, 2 no measurement.
-int Compare(float z, float other, float gate) {
-  if (other <= 0) return 2;
-  if (other < z - gate) return -1;
-  return other > z + gate ? 1 : 0;
-}
+/// Of neighbours that are alike.
+constexpr DepthTolerance<float> kAlike = {0.01f, 5};
 
 /// (u, v) must not lie on the image border.
 bool IsFlying(const cv::Mat& depth, int u, int v) {
   const float z = depth.at<float>(v, u);
-  const float gate = 5 * DepthSigma(z) + 0.01f;
   constexpr std::array<std::array<int, 2>, 4> kDirections = {
       {{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+  const auto compare = [&](int other_u, int other_v) {
+    return ClassifyDepth(depth.at<float>(other_v, other_u), z, kAlike.At(z));
+  };
   int alike = 0;
   bool between = false;
   for (const auto& [du, dv] : kDirections) {
-    const int a = Compare(z, depth.at<float>(v + dv, u + du), gate);
-    const int b = Compare(z, depth.at<float>(v - dv, u - du), gate);
-    alike += (a == 0) + (b == 0);
-    between |= (a == -1 && b == 1) || (a == 1 && b == -1);
+    const DepthState a = compare(u + du, v + dv), b = compare(u - du, v - dv);
+    alike += (a == DepthState::kObserved) + (b == DepthState::kObserved);
+    between |= (a == DepthState::kOccluded && b == DepthState::kFree) ||
+               (a == DepthState::kFree && b == DepthState::kOccluded);
   }
   // A pixel of a thin, slanted surface has at least two neighbours along it,
   // a mixed pixel of a straight edge at most two other mixed ones.

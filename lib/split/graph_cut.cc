@@ -10,14 +10,16 @@
 #include <opencv2/imgproc/detail/gcgraph.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
+#include "splitfusion/lib/geometry/point_map.h"
 
 namespace splitfusion {
 namespace {
 
 /// Weights are cut as integers, so that the result is exact.
-constexpr float kUnit = 1000.0f;
+constexpr float kUnit = 1000.0f;  // Unit.
 
-constexpr int kDirections = 4;  // The other four are these reversed.
+constexpr int kDirections = 4;  // Layout: the other four are these reversed.
 
 using Weights = cv::Mat_<cv::Vec4i>;  // Per pixel: edges to the 4 offsets.
 
@@ -36,9 +38,9 @@ class EdgeWeight {
     const float distance =
         std::max({0.25f * std::abs(step[2]), PlaneDistance(np, step),
                   PlaneDistance(nq, step)});
-    const float scale = static_cast<float>(
-        options_.step_factor * DepthSigma(points_.points(p)[2]) +
-        options_.step_offset);
+    const DepthTolerance<double> step_scale = {options_.step_offset,
+                                               options_.step_factor};
+    const auto scale = static_cast<float>(step_scale.At(points_.points(p)[2]));
     const float ratio = distance / scale;
     if (ratio > 3) return 0;
     const float exponent = ratio * ratio + NormalTerm(np, nq, step);
@@ -106,8 +108,8 @@ class GridGraph {
   }
 
  private:
-  static constexpr int kNone = -1;        // No depth.
-  static constexpr int kBackground = -2;  // Certain.
+  static constexpr int kNone = -1;        // Layout: no depth.
+  static constexpr int kBackground = -2;  // Layout: certain.
 
   void NumberNodes() {
     for (int v = 0; v < node_.rows; ++v) {
@@ -137,7 +139,7 @@ class GridGraph {
         (node_(p) < 0 && node_(q) < 0)) {
       return 0;
     }
-    const float length = direction < 2 ? 1.0f : 1.41421356f;
+    const float length = direction < 2 ? 1.0f : 1.41421356f;  // Maths.
     return static_cast<int>(kUnit * weight(origin + p, origin + q) / length);
   }
 

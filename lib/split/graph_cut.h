@@ -4,9 +4,10 @@
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/base/option_list.h"
-#include "splitfusion/lib/geometry/point_map.h"
 
 namespace splitfusion {
+
+struct PointMap;
 
 /// Weights of the 3D min-cut of SplitFusion IV-A.
 struct GraphCutOptions {

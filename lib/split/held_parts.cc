@@ -135,7 +135,7 @@ void TakeOutParts(const std::vector<MergeGroup>& groups,
     const cv::Mat inside = mask & (work->prior.labels == match.surface);
     work->prior.labels.setTo(0, inside);
     work->compared.labels.setTo(0, inside);
-    work->compared.agreement.setTo(static_cast<int>(Agreement::kUnknown),
+    work->compared.agreement.setTo(static_cast<int>(DepthState::kUnmeasured),
                                    inside);
     match = {};
   }

@@ -47,10 +47,10 @@ std::map<int, CommonPixels> CountCommon(const cv::Mat_<uchar>& mask,
       if (!mask(v, u)) continue;
       ++*detected;
       if (labels(v, u) != label) count = &counts[label = labels(v, u)];
-      const auto state = static_cast<Agreement>(agreement(v, u));
+      const auto state = static_cast<DepthState>(agreement(v, u));
       ++count->all;
-      count->measured += state != Agreement::kUnknown;
-      count->same += state == Agreement::kSame;
+      count->measured += state != DepthState::kUnmeasured;
+      count->same += state == DepthState::kObserved;
     }
   }
   return counts;

@@ -49,7 +49,7 @@ struct Match {
 /// what is left and lies inside of a surface, at its depth, is a piece of it.
 /// The class does not count: detectors change their mind about it.
 ///
-/// `agreement`: HxW 8UC1 of Agreement; `surfaces`: ids that may be matched.
+/// `agreement`: HxW 8UC1, a DepthState; `surfaces`: ids that may be matched.
 std::vector<Match> MatchInstances(const std::vector<Candidate>& candidates,
                                   const LabelImage& predicted_labels,
                                   const cv::Mat_<uchar>& agreement,

@@ -15,11 +15,12 @@ constexpr int kMinPixels = 40;        // Fewer are noise.
 constexpr double kMaxShare = 0.5;     // Of the body's pixels: it is a part.
 constexpr double kMaxUnmapped = 0.3;  // Of the pixels with depth.
 constexpr float kReach = 0.45f;       // Metres: head to chest, hand to hip.
-constexpr float kInFront = 0.10f;     // Metres, of what hides the connection.
 constexpr float kJump = 0.15f;        // Metres between neighbours.
 constexpr int kGap = 9;               // Pixels without depth beside an edge.
 constexpr double kMaxStrip = 0.06;    // Of the image: width of a strip.
 constexpr int kPointStride = 4;       // Pixels between compared points.
+/// Of what hides the connection.
+constexpr DepthTolerance<float> kInFront = {0.10f, 0};
 
 /// A patch of the image: its pixels (HxW, 255) and the points of some of them.
 struct Patch {
@@ -81,7 +82,9 @@ std::set<int> InFrontOf(const Patch& patch, const SplitWork& work) {
     for (int u = 0; u < area.width; ++u) {
       const int segment = work.segment_labels(area.y + v, area.x + u);
       const float z = work.frame.depth.at<float>(area.y + v, area.x + u);
-      if (grown(v, u) && segment > 0 && z > 0 && z < patch.depth - kInFront) {
+      if (grown(v, u) && segment > 0 &&
+          ClassifyDepth(z, patch.depth, kInFront.At(z)) ==
+              DepthState::kOccluded) {
         nearer.insert(segment);
       }
     }
@@ -228,7 +231,7 @@ cv::Mat_<uchar> WithRim(const cv::Mat_<uchar>& piece,
 /// Whether the piece does not hang together with the mapped background.
 bool StandsFree(const Patch& piece, const SplitWork& work) {
   const cv::Mat_<uchar> mapped =
-      (work.compared.background == static_cast<int>(Agreement::kSame)) &
+      (work.compared.background == static_cast<int>(DepthState::kObserved)) &
       (work.segment_labels == 0);
   const cv::Mat_<uchar> grown =
       GrowOver(mapped, piece.pixels, work.frame.depth);

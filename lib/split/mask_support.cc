@@ -43,7 +43,7 @@ cv::Mat_<float> MaskSupport::Predict(int surface,
   cv::blur(support, support, window);
   for (int v = 0; v < to.height; ++v) {
     for (int u = 0; u < to.width; ++u) {
-      if (inside(v, u) > 0.01f) {
+      if (inside(v, u) > 0.01f) {  // Maths.
         result(to.y + v, to.x + u) = support(v, u) / inside(v, u);
       }
     }

@@ -9,8 +9,8 @@
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/split/birth_queue.h"
 #include "splitfusion/lib/split/instance_matcher.h"
-#include "splitfusion/lib/split/seen_space.h"
 #include "splitfusion/lib/split/split_options.h"
+#include "splitfusion/lib/visibility/seen_space.h"
 
 namespace splitfusion {
 

@@ -4,10 +4,14 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "splitfusion/lib/geometry/depth_comparison.h"
+
 namespace splitfusion {
 namespace {
 
 constexpr int kReach = 3;  // Pixels.
+/// Beside a slope of 45 degrees.
+constexpr DepthTolerance<float> kNoise = {0, 3};
 
 /// True if a pixel of `body` near (u, v) continues the surface there.
 bool Touches(const PointMap& points, const cv::Mat_<uchar>& body, int u,
@@ -20,7 +24,10 @@ bool Touches(const PointMap& points, const cv::Mat_<uchar>& body, int u,
       if (!body(j, i) || points.points(j, i)[2] <= 0) continue;
       const cv::Vec3f step = points.points(j, i) - point;
       const float sideways = std::hypot(step[0], step[1]);
-      if (std::abs(step[2]) < sideways + 3 * DepthSigma(point[2])) return true;
+      if (!IsDepthJump(point[2], points.points(j, i)[2],
+                       sideways + kNoise.At(point[2]))) {
+        return true;
+      }
     }
   }
   return false;

@@ -9,23 +9,19 @@
 namespace splitfusion {
 namespace {
 
-constexpr std::array<std::array<int, 2>, 4> kSteps = {
+constexpr std::array<std::array<int, 2>, 4> kSteps = {  // Layout.
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-
-bool Continuous(float a, float b) {
-  return std::abs(a - b) <= 4 * DepthSigma(a) + 0.02f;
-}
 
 }  // namespace
 
 cv::Mat_<uchar> UnexplainedPixels(int surface, const ComparedDepth& compared) {
-  const int nearer = static_cast<int>(Agreement::kNearer);
+  const int nearer = static_cast<int>(DepthState::kOccluded);
   return ((compared.agreement == nearer) | (compared.background == nearer)) &
          ((compared.labels == 0) | (compared.labels == surface));
 }
 
 cv::Mat_<uchar> UnmappedPixels(const ComparedDepth& compared) {
-  const int unknown = static_cast<int>(Agreement::kUnknown);
+  const int unknown = static_cast<int>(DepthState::kUnmeasured);
   return (compared.agreement == unknown) & (compared.background == unknown);
 }
 
@@ -41,7 +37,8 @@ cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
       const cv::Point next(at.x + du, at.y + dv);
       if (!next.inside({0, 0, extent.cols, extent.rows}) || !open(next) ||
           extent(next) ||
-          !Continuous(depth.at<float>(at), depth.at<float>(next))) {
+          IsDepthJump(depth.at<float>(at), depth.at<float>(next),
+                      kSmoothDepth.At(depth.at<float>(at)))) {
         continue;
       }
       extent(next) = 255;

@@ -8,15 +8,13 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/geometry/point_map.h"
+#include "splitfusion/lib/split/graph_cut.h"
 
 namespace splitfusion {
 namespace {
 
-Agreement Compare(float live, float predicted, double gate) {
-  if (live <= 0 || predicted <= 0) return Agreement::kUnknown;
-  if (live < predicted - gate) return Agreement::kNearer;
-  return live > predicted + gate ? Agreement::kFarther : Agreement::kSame;
-}
+/// Of the noise, beside PriorOptions' gates.
+constexpr double kGateSigmas = 3;
 
 /// Distance to the border of a mask, pixels: positive inside.
 cv::Mat_<float> SignedDistance(const cv::Mat_<uchar>& mask) {
@@ -92,14 +90,14 @@ class Evidence {
   double OfPrediction(int v, int u) const {
     const int label = labels_(v, u);
     const bool own = surface_ > 0 && label == surface_;
-    switch (static_cast<Agreement>(agreement_(v, u))) {
-      case Agreement::kSame:
+    switch (static_cast<DepthState>(agreement_(v, u))) {
+      case DepthState::kObserved:
         if (own) return options_.prediction_weight * OwnShare(v, u);
         return label == 0 ? -options_.background_weight
                           : -options_.prediction_weight;
-      case Agreement::kFarther:
+      case DepthState::kFree:
         return own ? -MovedAwayWeight(v, u) : 0.0;
-      case Agreement::kNearer:
+      case DepthState::kOccluded:
         return own || label == 0 ? options_.unexplained_weight : 0.0;
       default:
         return 0.0;
@@ -110,8 +108,10 @@ class Evidence {
   /// uncovered, or another part of the same surface: in front of the
   /// background, or inside of the detection.
   double MovedAwayWeight(int v, int u) const {
-    const auto background = static_cast<Agreement>(background_(v, u));
-    if (background == Agreement::kNearer) return -options_.unexplained_weight;
+    const auto background = static_cast<DepthState>(background_(v, u));
+    if (background == DepthState::kOccluded) {
+      return -options_.unexplained_weight;
+    }
     if (!detected_) return 0.5 * options_.prediction_weight;
     return mask_(v, u) ? 0.0 : options_.prediction_weight;
   }
@@ -167,14 +167,16 @@ ComparedDepth CompareDepth(const cv::Mat& depth,
   tbb::parallel_for(0, depth.rows, [&](int v) {
     for (int u = 0; u < depth.cols; ++u) {
       const float live = depth.at<float>(v, u);
-      const double noise = 3 * DepthSigma(live);
-      const double gate = prediction.labels(v, u) > 0 ? options.surface_gate
-                                                      : options.background_gate;
+      const DepthTolerance<double> background = {options.background_gate,
+                                                 kGateSigmas};
+      const DepthTolerance<double> surface = {options.surface_gate,
+                                              kGateSigmas};
+      const auto& gate = prediction.labels(v, u) > 0 ? surface : background;
       compared.agreement(v, u) = static_cast<uchar>(
-          Compare(live, prediction.depth(v, u), noise + gate));
+          ClassifyDepth(live, prediction.depth(v, u), gate.At(live)));
       compared.background(v, u) = static_cast<uchar>(
-          Compare(live, has_background ? prediction.background(v, u) : 0,
-                  noise + options.background_gate));
+          ClassifyDepth(live, has_background ? prediction.background(v, u) : 0,
+                        background.At(live)));
     }
   });
   return compared;
@@ -183,7 +185,7 @@ ComparedDepth CompareDepth(const cv::Mat& depth,
 cv::Mat_<uchar> AgreeingPixels(int surface, const LabelImage& predicted_labels,
                                const cv::Mat_<uchar>& agreement) {
   return (predicted_labels == surface) &
-         (agreement == static_cast<int>(Agreement::kSame));
+         (agreement == static_cast<int>(DepthState::kObserved));
 }
 
 SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,

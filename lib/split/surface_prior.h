@@ -1,22 +1,18 @@
 #ifndef SPLITFUSION_LIB_SPLIT_SURFACE_PRIOR_H_
 #define SPLITFUSION_LIB_SPLIT_SURFACE_PRIOR_H_
 
-#include <cstdint>
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/base/option_list.h"
-#include "splitfusion/lib/split/graph_cut.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 
 namespace splitfusion {
 
-/// What the live depth says about the predicted surface at a pixel.
-enum class Agreement : std::uint8_t {
-  kUnknown = 0,  ///< No live depth or nothing predicted.
-  kSame = 1,     ///< Live and predicted depth agree within the gate.
-  kNearer = 2,   ///< The live point is in front of the predicted surface.
-  kFarther = 3,  ///< The live point is behind the predicted surface.
-};
+struct GraphCutOptions;
+
+/// Between neighbouring pixels of one surface.
+constexpr DepthTolerance<float> kSmoothDepth = {0.02f, 4};
 
 /// How strongly each observation speaks for or against a surface, in units of
 /// the strongest edge of the graph cut, per pixel.
@@ -36,7 +32,7 @@ struct PriorOptions {
 /// The live depth compared with the prediction; all images HxW.
 struct ComparedDepth {
   LabelImage labels;  ///< Predicted surface ids, 0 = background or nothing.
-  cv::Mat_<uchar> agreement;   ///< With the nearest surface, of Agreement.
+  cv::Mat_<uchar> agreement;   ///< With the nearest surface, a DepthState.
   cv::Mat_<uchar> background;  ///< With the background behind all surfaces.
 };
 

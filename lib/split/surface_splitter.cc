@@ -50,9 +50,9 @@ bool BackgroundFits(const std::vector<Candidate>& candidates,
   cv::Mat_<uchar> open = work.compared.labels == 0;
   for (const Candidate& candidate : candidates) open.setTo(0, candidate.mask);
   const cv::Mat_<uchar>& agreement = work.compared.agreement;
-  open.setTo(0, agreement == static_cast<int>(Agreement::kUnknown));
+  open.setTo(0, agreement == static_cast<int>(DepthState::kUnmeasured));
   const int same = cv::countNonZero(
-      open & (agreement == static_cast<int>(Agreement::kSame)));
+      open & (agreement == static_cast<int>(DepthState::kObserved)));
   return same >= kMinFit * cv::countNonZero(open);
 }
 
@@ -268,7 +268,7 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
   if (frames_ == 1 && segment.score >= options_.confident_score) return true;
   const cv::Mat mapped =
       pixels & (work.prior.labels == 0) &
-      (work.compared.agreement == static_cast<int>(Agreement::kSame));
+      (work.compared.agreement == static_cast<int>(DepthState::kObserved));
   const bool was_background =
       frames_ > kEarlyFrames &&
       2 * cv::countNonZero(mapped) > cv::countNonZero(pixels);

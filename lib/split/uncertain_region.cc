@@ -16,12 +16,12 @@ namespace {
 bool IsDepthEdge(const cv::Mat& depth, int u, int v) {
   const float z = depth.at<float>(v, u);
   if (z <= 0) return false;
-  const float gate = 4 * DepthSigma(z) + 0.02f;
+  const float gate = kSmoothDepth.At(z);
   for (int j = std::max(0, v - 1); j <= std::min(v + 1, depth.rows - 1); ++j) {
     for (int i = std::max(0, u - 1); i <= std::min(u + 1, depth.cols - 1);
          ++i) {
       const float other = depth.at<float>(j, i);
-      if (other > 0 && std::abs(other - z) > gate) return true;
+      if (other > 0 && IsDepthJump(z, other, gate)) return true;
     }
   }
   return false;
@@ -30,14 +30,16 @@ bool IsDepthEdge(const cv::Mat& depth, int u, int v) {
 bool IsUncertain(const UncertainInput& input, const UncertainOptions& options,
                  float distance, int u, int v) {
   if (distance <= options.band || input.unconfirmed(v, u)) return true;
-  const auto agreement = static_cast<Agreement>(input.agreement(v, u));
+  const auto agreement = static_cast<DepthState>(input.agreement(v, u));
   const bool background_seen =
-      input.predicted_labels(v, u) == 0 && agreement == Agreement::kSame;
+      input.predicted_labels(v, u) == 0 && agreement == DepthState::kObserved;
   if (input.detected(v, u) && !background_seen) return true;
-  if (input.predicted_labels(v, u) > 0 && agreement != Agreement::kFarther) {
+  if (input.predicted_labels(v, u) > 0 && agreement != DepthState::kFree) {
     return true;
   }
-  if (distance <= options.reach && agreement == Agreement::kNearer) return true;
+  if (distance <= options.reach && agreement == DepthState::kOccluded) {
+    return true;
+  }
   return distance <= options.edge_band && IsDepthEdge(input.depth, u, v);
 }
 

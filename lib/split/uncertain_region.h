@@ -25,7 +25,7 @@ struct UncertainInput {
   cv::Mat_<uchar> unconfirmed;  ///< 255: detected, but no surface.
   cv::Mat_<uchar> detected;     ///< 255: in the mask of any surface.
   LabelImage predicted_labels;  ///< Surfaces expected in this frame.
-  cv::Mat_<uchar> agreement;    ///< Of Agreement.
+  cv::Mat_<uchar> agreement;    ///< A DepthState.
   cv::Mat depth;                ///< 32FC1, metres, 0 = none.
 };
 

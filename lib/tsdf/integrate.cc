@@ -38,7 +38,7 @@ bool InView(const PinholeCamera& camera, const RigidMotion& motion,
   constexpr float kHalf = 0.5f * (kLeafSize - 1);
   const Eigen::Vector3f center = Eigen::Map<const Eigen::Vector3f>(block.base) +
                                  motion.axes * Eigen::Vector3f::Constant(kHalf);
-  const float radius = 1.8f * kHalf * motion.voxel;
+  const float radius = 1.8f * kHalf * motion.voxel;  // Maths.
   if (center.z() < -radius) return false;
   const float z = std::max(center.z(), radius);
   const float margin_x = static_cast<float>(camera.fx) * radius / z;
@@ -52,7 +52,7 @@ bool InView(const PinholeCamera& camera, const RigidMotion& motion,
          v < static_cast<float>(camera.height) + 2 * margin_y;
 }
 
-constexpr std::size_t kBatch = 32;  // Blocks.
+constexpr std::size_t kBatch = 32;  // Speed: blocks.
 
 /// Some blocks of a volume that may change.
 struct FoundBlocks {

@@ -16,7 +16,7 @@ class MeshExtractor {
   /// The most that `min_weight` may be in a volume that is meshed again:
   /// integration does not tell where the weight of a voxel that has more has
   /// changed.
-  static constexpr double kMaxMinWeight = 8;
+  static constexpr double kMaxMinWeight = 8;  // Speed.
 
   MeshExtractor();
   ~MeshExtractor();

@@ -23,7 +23,7 @@ using internal::kLatticePoints;                  // kLattice^3.
 
 /// Lattice points are counted z fastest. A block owns the eight that are not on
 /// its upper faces; the others are its neighbours'.
-constexpr int kOwnPoints = 8;
+constexpr int kOwnPoints = 8;  // Layout.
 struct LatticeIndex {
   explicit LatticeIndex(int i) : x(i / 9), y(i / 3 % 3), z(i % 3) {}
   /// Which neighbour owns the point: 4 dx + 2 dy + dz, d = 1 if it is the next
@@ -78,7 +78,7 @@ SkinnedPoint SkinPoint(const openvdb::Coord& origin, float voxel,
 void SkinOwn(const openvdb::Coord& origin, float voxel, float reach,
              const SkinningIndex& index, LeafLattice* lattice) {
   const LatticeIndex center(kLatticePoints / 2);
-  const float half_diagonal = 0.87f * voxel * kLeafSize;
+  const float half_diagonal = 0.87f * voxel * kLeafSize;  // Maths.
   float distance = 0;
   SkinningSupport support;
   support.nearest =

@@ -12,6 +12,8 @@
 
 #include "splitfusion/cost_functions/point_to_plane.h"
 #include "splitfusion/lib/energy/block_problem.h"
+#include "splitfusion/lib/energy/warp_functor.h"
+#include "splitfusion/lib/energy/warped_points.h"
 #include "support/gradient_check.h"
 #include "support/sample_correspondences.h"
 #include "support/sample_graphs.h"

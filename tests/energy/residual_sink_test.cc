@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "splitfusion/lib/energy/ceres_blocks.h"
+#include "splitfusion/lib/energy/warped_points.h"
 #include "support/expect_input_error.h"
 #include "support/term_energy.h"
 

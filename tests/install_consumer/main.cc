@@ -8,6 +8,7 @@
 
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/lib/geometry/camera.h"

@@ -12,8 +12,8 @@
 
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/report/report_json.h"
+#include "splitfusion/lib/report/surface_output.h"
 #include "splitfusion/pipelines/presets.h"
-#include "splitfusion/pipelines/surface_output.h"
 #include "support/expect_input_error.h"
 #include "support/synthetic_run.h"
 #include "support/temporary_folder.h"

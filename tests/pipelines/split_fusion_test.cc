@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/evaluation/trajectory_error.h"
 #include "support/expect_input_error.h"
 #include "support/synthetic_run.h"

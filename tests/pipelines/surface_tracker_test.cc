@@ -8,7 +8,7 @@
 
 #include "pipelines/tracking_scenes.h"
 #include "splitfusion/cost_functions/arap.h"
-#include "splitfusion/lib/deformation/seen_edges.h"
+#include "splitfusion/lib/visibility/seen_edges.h"
 #include "support/expect_input_error.h"
 
 namespace splitfusion {

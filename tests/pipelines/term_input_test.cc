@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pipelines/tracking_scenes.h"
+#include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
 namespace {

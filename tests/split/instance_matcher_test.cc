@@ -14,7 +14,7 @@ class MatchInstancesTest : public testing::Test {
  protected:
   MatchInstancesTest()
       : labels_(120, 160, std::uint16_t(0)),
-        agreement_(120, 160, uchar(Agreement::kSame)) {
+        agreement_(120, 160, uchar(DepthState::kObserved)) {
     labels_(cv::Rect(10, 20, 40, 80)) = 1;
     labels_(cv::Rect(90, 20, 40, 80)) = 2;
   }
@@ -58,7 +58,8 @@ TEST_F(MatchInstancesTest, FollowsASurfaceThatComesIntoView) {
 }
 
 TEST_F(MatchInstancesTest, SomethingAtAnotherDepthIsSomethingElse) {
-  agreement_(cv::Rect(0, 0, 80, 120)) = static_cast<uchar>(Agreement::kNearer);
+  agreement_(cv::Rect(0, 0, 80, 120)) =
+      static_cast<uchar>(DepthState::kOccluded);
   EXPECT_EQ(Run({{RectMask({10, 20, 40, 80})}})[0].surface, 0);
 }
 
@@ -75,7 +76,8 @@ TEST_F(MatchInstancesTest, OnlyListedSurfacesTakePart) {
 }
 
 TEST_F(MatchInstancesTest, OverlapCountsEveryShare) {
-  agreement_(cv::Rect(10, 20, 40, 20)) = static_cast<uchar>(Agreement::kNearer);
+  agreement_(cv::Rect(10, 20, 40, 20)) =
+      static_cast<uchar>(DepthState::kOccluded);
   const Overlap overlap =
       ComputeOverlap(RectMask({10, 20, 20, 80}), 1, labels_, agreement_);
   EXPECT_DOUBLE_EQ(overlap.iou, 0.5);

@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "split/splitter_fixture.h"
-#include "splitfusion/lib/split/seen_space.h"
+#include "splitfusion/lib/visibility/seen_space.h"
 
 namespace splitfusion {
 namespace {

@@ -91,7 +91,7 @@ class UncertainRegionTest : public testing::Test {
                RectMask({}),
                RectMask({}),
                kNothing.clone(),
-               cv::Mat_<uchar>(120, 160, uchar(Agreement::kUnknown)),
+               cv::Mat_<uchar>(120, 160, uchar(DepthState::kUnmeasured)),
                kDepth.clone()} {
     input_.labels(cv::Rect(60, 40, 40, 40)) = 1;
   }
@@ -124,12 +124,12 @@ TEST_F(UncertainRegionTest, CoversWhatADetectorGaveToASurface) {
   input_.detected = RectMask({40, 40, 60, 40});
   EXPECT_TRUE(At(45, 60));
   // Unless it is where the background is known to be.
-  input_.agreement.setTo(static_cast<int>(Agreement::kSame));
+  input_.agreement.setTo(static_cast<int>(DepthState::kObserved));
   EXPECT_FALSE(At(45, 60));
 }
 
 TEST_F(UncertainRegionTest, CoversWhatStandsBeforeTheBackgroundNearby) {
-  input_.agreement.setTo(static_cast<int>(Agreement::kNearer));
+  input_.agreement.setTo(static_cast<int>(DepthState::kOccluded));
   EXPECT_TRUE(At(40, 60));
   EXPECT_FALSE(At(20, 60));
 }

@@ -9,7 +9,7 @@ namespace {
 
 /// All unknown, nothing predicted.
 ComparedDepth Nothing() {
-  const cv::Mat_<uchar> unknown(120, 160, uchar(Agreement::kUnknown));
+  const cv::Mat_<uchar> unknown(120, 160, uchar(DepthState::kUnmeasured));
   return {LabelImage(120, 160, std::uint16_t(0)), unknown.clone(),
           unknown.clone()};
 }
@@ -18,7 +18,7 @@ TEST(UnexplainedPixels, StandBeforeTheBackgroundAndBelongToNobodyElse) {
   ComparedDepth compared = Nothing();
   EXPECT_EQ(cv::countNonZero(UnexplainedPixels(1, compared)), 0);
   EXPECT_EQ(cv::countNonZero(UnmappedPixels(compared)), 120 * 160);
-  compared.background(cv::Rect(0, 0, 30, 10)) = uchar(Agreement::kNearer);
+  compared.background(cv::Rect(0, 0, 30, 10)) = uchar(DepthState::kOccluded);
   compared.labels(cv::Rect(10, 0, 10, 10)) = 1;
   compared.labels(cv::Rect(20, 0, 10, 10)) = 2;
   EXPECT_EQ(cv::countNonZero(UnexplainedPixels(1, compared)), 200);
@@ -52,8 +52,8 @@ class RaisedArms : public testing::Test {
   RaisedArms() {
     scene_.Add(body_, 2.0, 1).Add(mapped_arm_, 2.0, 1).Add(open_arm_, 2.0, 1);
     compared_.labels(body_) = 1;
-    compared_.agreement(body_) = uchar(Agreement::kSame);
-    compared_.background(mapped_arm_) = uchar(Agreement::kNearer);
+    compared_.agreement(body_) = uchar(DepthState::kObserved);
+    compared_.background(mapped_arm_) = uchar(DepthState::kOccluded);
   }
   static double Difference(const cv::Mat& a, const cv::Mat& b) {
     return cv::norm(a, b, cv::NORM_INF);

@@ -8,8 +8,8 @@
 namespace splitfusion {
 namespace {
 
-Agreement At(const cv::Mat_<uchar>& agreement, int u) {
-  return static_cast<Agreement>(agreement(0, u));
+DepthState At(const cv::Mat_<uchar>& agreement, int u) {
+  return static_cast<DepthState>(agreement(0, u));
 }
 
 TEST(CompareDepth, TellsNearerFartherAndTheSame) {
@@ -18,16 +18,16 @@ TEST(CompareDepth, TellsNearerFartherAndTheSame) {
   prediction.depth = (cv::Mat_<float>(1, 6) << 1, 0, 1, 1, 1, 1);
   prediction.labels = LabelImage(1, 6, std::uint16_t(0));
   cv::Mat_<uchar> agreement = CompareDepth(live, prediction, {}).agreement;
-  EXPECT_EQ(At(agreement, 0), Agreement::kUnknown);
-  EXPECT_EQ(At(agreement, 1), Agreement::kUnknown);
-  EXPECT_EQ(At(agreement, 2), Agreement::kSame);
-  EXPECT_EQ(At(agreement, 3), Agreement::kFarther);
-  EXPECT_EQ(At(agreement, 4), Agreement::kNearer);
+  EXPECT_EQ(At(agreement, 0), DepthState::kUnmeasured);
+  EXPECT_EQ(At(agreement, 1), DepthState::kUnmeasured);
+  EXPECT_EQ(At(agreement, 2), DepthState::kObserved);
+  EXPECT_EQ(At(agreement, 3), DepthState::kFree);
+  EXPECT_EQ(At(agreement, 4), DepthState::kOccluded);
   // The background does not move: its gate is narrower than a surface's.
-  EXPECT_EQ(At(agreement, 5), Agreement::kFarther);
+  EXPECT_EQ(At(agreement, 5), DepthState::kFree);
   prediction.labels.setTo(1);
   agreement = CompareDepth(live, prediction, {}).agreement;
-  EXPECT_EQ(At(agreement, 5), Agreement::kSame);
+  EXPECT_EQ(At(agreement, 5), DepthState::kObserved);
 }
 
 TEST(CompareDepth, SeesTheBackgroundBehindASurface) {
@@ -36,23 +36,23 @@ TEST(CompareDepth, SeesTheBackgroundBehindASurface) {
   prediction.depth = (cv::Mat_<float>(1, 3) << 1, 1, 1);
   prediction.labels = LabelImage(1, 3, std::uint16_t(1));
   EXPECT_EQ(At(CompareDepth(live, prediction, {}).background, 0),
-            Agreement::kUnknown);
+            DepthState::kUnmeasured);
   prediction.background = (cv::Mat_<float>(1, 3) << 2, 2, 0);
   const ComparedDepth compared = CompareDepth(live, prediction, {});
   for (int u = 0; u < 3; ++u) {
-    EXPECT_EQ(At(compared.agreement, u), Agreement::kFarther);
+    EXPECT_EQ(At(compared.agreement, u), DepthState::kFree);
   }
-  EXPECT_EQ(At(compared.background, 0), Agreement::kNearer);
-  EXPECT_EQ(At(compared.background, 1), Agreement::kSame);
-  EXPECT_EQ(At(compared.background, 2), Agreement::kUnknown);
+  EXPECT_EQ(At(compared.background, 0), DepthState::kOccluded);
+  EXPECT_EQ(At(compared.background, 1), DepthState::kObserved);
+  EXPECT_EQ(At(compared.background, 2), DepthState::kUnmeasured);
 }
 
 class GatherEvidenceTest : public testing::Test {
  protected:
   GatherEvidenceTest()
       : compared_{LabelImage(120, 160, std::uint16_t(0)),
-                  cv::Mat_<uchar>(120, 160, uchar(Agreement::kUnknown)),
-                  cv::Mat_<uchar>(120, 160, uchar(Agreement::kUnknown))} {}
+                  cv::Mat_<uchar>(120, 160, uchar(DepthState::kUnmeasured)),
+                  cv::Mat_<uchar>(120, 160, uchar(DepthState::kUnmeasured))} {}
 
   /// Evidence at a pixel; the surface's id is 1.
   float At(const cv::Point& pixel, const cv::Mat_<uchar>& mask,
@@ -63,7 +63,7 @@ class GatherEvidenceTest : public testing::Test {
     if (!evidence.crop.contains(pixel)) return kSurelyBackground;
     return evidence.evidence(pixel - evidence.crop.tl());
   }
-  void Predict(const cv::Rect& rect, int label, Agreement agreement) {
+  void Predict(const cv::Rect& rect, int label, DepthState agreement) {
     compared_.labels(rect) = static_cast<std::uint16_t>(label);
     compared_.agreement(rect) = static_cast<uchar>(agreement);
   }
@@ -84,44 +84,44 @@ TEST_F(GatherEvidenceTest, FollowsTheDistanceToTheMasksBorder) {
 TEST_F(GatherEvidenceTest, ThePredictionKeepsWhatADetectionForgot) {
   const cv::Rect leg(50, 80, 10, 30);
   EXPECT_EQ(At({55, 105}, mask_), kSurelyBackground);
-  Predict(leg, 1, Agreement::kSame);
+  Predict(leg, 1, DepthState::kObserved);
   EXPECT_GT(At({55, 105}, mask_), 0);
   // ... but not what hardly any detection ever covered.
   EXPECT_LT(At({55, 105}, mask_, cv::Mat_<float>(120, 160, 0.1f)), 0);
 }
 
 TEST_F(GatherEvidenceTest, AMissedSurfaceIsWhereTheDepthAgrees) {
-  Predict({40, 40, 40, 40}, 1, Agreement::kSame);
+  Predict({40, 40, 40, 40}, 1, DepthState::kObserved);
   EXPECT_GT(At({60, 60}, missed_), 0);
-  Predict({40, 40, 20, 40}, 1, Agreement::kFarther);
+  Predict({40, 40, 20, 40}, 1, DepthState::kFree);
   EXPECT_LT(At({50, 60}, missed_), 0);
   EXPECT_GT(At({70, 60}, missed_), 0);
 }
 
 TEST_F(GatherEvidenceTest, AMissedSurfaceMayBeInAllItsExtent) {
-  Predict({40, 40, 40, 40}, 1, Agreement::kSame);
+  Predict({40, 40, 40, 40}, 1, DepthState::kObserved);
   EXPECT_EQ(At({100, 60}, missed_), kSurelyBackground);
   extent_ = RectMask({40, 40, 80, 40});
   EXPECT_GT(At({100, 60}, missed_), 0);
 }
 
 TEST_F(GatherEvidenceTest, BehindItselfIsItselfOrTheBackground) {
-  Predict({40, 40, 40, 40}, 1, Agreement::kSame);
+  Predict({40, 40, 40, 40}, 1, DepthState::kObserved);
   const cv::Rect uncovered(55, 55, 10, 10);
-  Predict(uncovered, 1, Agreement::kFarther);
-  compared_.background(uncovered) = static_cast<uchar>(Agreement::kSame);
+  Predict(uncovered, 1, DepthState::kFree);
+  compared_.background(uncovered) = static_cast<uchar>(DepthState::kObserved);
   EXPECT_LT(At({60, 60}, missed_), 0);
-  compared_.background(uncovered) = static_cast<uchar>(Agreement::kNearer);
+  compared_.background(uncovered) = static_cast<uchar>(DepthState::kOccluded);
   EXPECT_GT(At({60, 60}, missed_), 0);
 }
 
 TEST_F(GatherEvidenceTest, BackgroundAndOthersSpeakAgainst) {
   const float neutral = At({60, 60}, mask_);
-  Predict({40, 40, 40, 40}, 0, Agreement::kSame);
+  Predict({40, 40, 40, 40}, 0, DepthState::kObserved);
   EXPECT_LT(At({60, 60}, mask_), neutral);
-  Predict({40, 40, 40, 40}, 0, Agreement::kNearer);
+  Predict({40, 40, 40, 40}, 0, DepthState::kOccluded);
   EXPECT_GT(At({60, 60}, mask_), neutral);
-  Predict({40, 40, 40, 40}, 2, Agreement::kSame);
+  Predict({40, 40, 40, 40}, 2, DepthState::kObserved);
   EXPECT_LT(At({60, 60}, mask_), 0);
 }
 

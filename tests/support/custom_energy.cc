@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
 namespace {

@@ -1,6 +1,7 @@
 #include "support/term_energy.h"
 
 #include "splitfusion/lib/energy/ceres_blocks.h"
+#include "splitfusion/lib/energy/warped_points.h"
 #include "support/gradient_check.h"
 
 namespace splitfusion {

@@ -8,6 +8,7 @@
 #include "splitfusion/lib/deformation/graph_growth.h"
 #include "splitfusion/lib/deformation/surface_edges.h"
 #include "splitfusion/lib/energy/block_problem.h"
+#include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/synthetic/hash_noise.h"
 
 namespace splitfusion {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "labelled_view.h"
-#include "splitfusion/lib/association/observe_surface.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
+#include "splitfusion/lib/model/observe_surface.h"
 
 namespace splitfusion {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "masked_frames.h"
-#include "splitfusion/lib/association/live_view.h"
 #include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 #include "splitfusion/lib/tsdf/warped_integration.h"

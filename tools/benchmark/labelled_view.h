@@ -1,7 +1,7 @@
 #ifndef SPLITFUSION_TOOLS_BENCHMARK_LABELLED_VIEW_H_
 #define SPLITFUSION_TOOLS_BENCHMARK_LABELLED_VIEW_H_
 
-#include "splitfusion/lib/association/live_view.h"
+#include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
 
 namespace splitfusion {

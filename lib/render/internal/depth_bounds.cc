@@ -17,8 +17,8 @@ DepthBounds::DepthBounds(const std::vector<LeafPlace>& places, float voxel_size,
       bounds_(static_cast<std::size_t>(columns_) * rows_, {far_, near_}) {
   constexpr int kLeafSize = 8;
   // A ray that enters a block must be seen in front of it first.
-  constexpr float kBefore = 2;  // Voxels.
-  const float radius = voxel_size * (0.87f * kLeafSize + kBefore);
+  constexpr float kBefore = 2;  // Speed: voxels.
+  const float radius = voxel_size * (0.87f * kLeafSize + kBefore);  // Maths.
   const float half = 0.5f * (kLeafSize - 1);
   for (const auto& [x, y, z] : places) {
     const Eigen::Vector3f corner(static_cast<float>(kLeafSize * x),

@@ -64,7 +64,7 @@ SPLITFUSION_INLINE void ReadSamples(const RayVolume& volume, const Places& at,
 /// Advance in z-depth to where a ray leaves its block along one axis.
 inline float ToWall(float place, std::int32_t voxel, float step) {
   const float low = static_cast<float>(voxel & ~7) - 0.5f;
-  const float wall = step > 0 ? low + 8.0f : low;
+  const float wall = step > 0 ? low + 8.0f : low;  // Layout.
   const float advance = (wall - place) / step;
   return std::abs(step) > 1e-9f ? advance : 1e9f;
 }
@@ -98,7 +98,7 @@ bool StepRays(const RayVolume& volume, RayBundle* rays) {
     float leave = Lower(1e9f, ToWall(at.x[r], at.i[r], rays->step_x[r]));
     leave = Lower(leave, ToWall(at.y[r], at.j[r], rays->step_y[r]));
     leave = Lower(leave, ToWall(at.z[r], at.k[r], rays->step_z[r]));
-    const float skipped = t + (leave < 0 ? 0.0f : leave) + 1e-4f;
+    const float skipped = t + (leave < 0 ? 0.0f : leave) + 1e-4f;  // Maths.
     // The last sample of a block tells whether the surface is crossed next.
     const float crossed = skipped - rays->voxel_step[r];
     const float to_end = crossed > walked ? crossed : walked;

@@ -18,9 +18,10 @@ constexpr FusionPixel kNoPixel = {-kInfinity, 0};
 /// Multiples of the golden section are spread evenly over 0..1, those of one
 /// voxel over time as well as those of neighbours.
 float Dither(int time, int z) {
-  constexpr double kGolden = 0.6180339887498949;
+  constexpr double kGolden = 0.6180339887498949;  // Maths.
   const double phase = kGolden * (static_cast<double>(time) + 3 * z);
-  return static_cast<float>(std::min(phase - std::floor(phase), 0.999));
+  return static_cast<float>(
+      std::min(phase - std::floor(phase), 0.999));  // Maths.
 }
 
 }  // namespace
@@ -78,8 +79,8 @@ void FusionImage::FillTiles(const DepthObservation& observation, int tile_row) {
 
 FusedPart FusionImage::MayChange(const ImageBox& box) const {
   if (!box.in_front) return {kInfinity, false};
-  constexpr float kPixelMargin = 1;      // Rounding to pixels, and of floats.
-  constexpr float kDepthMargin = 1e-3f;  // Metres; rounding.
+  constexpr float kPixelMargin = 1;      // Maths: pixels, of rounding to them.
+  constexpr float kDepthMargin = 1e-3f;  // Maths: metres; rounding.
   const float u_low = box.u_low - kPixelMargin;
   const float v_low = box.v_low - kPixelMargin;
   const float u_high = box.u_high + kPixelMargin;

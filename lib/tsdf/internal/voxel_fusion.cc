@@ -40,7 +40,7 @@ SPLITFUSION_INLINE void InterpolateRow(const float plane[9][3], int y, int axis,
                        column[1], column[1], column[1], column[1]};
   const Lanes end = {column[1], column[1], column[1], column[1],
                      column[2], column[2], column[2], column[2]};
-  const Lanes along = {0, 0.25f, 0.5f, 0.75f, 0, 0.25f, 0.5f, 0.75f};
+  const Lanes along = {0, 0.25f, 0.5f, 0.75f, 0, 0.25f, 0.5f, 0.75f};  // Maths.
   *row = begin + along * (end - begin);
 }
 

@@ -35,7 +35,7 @@ struct FusedLeaf {
 };
 
 /// No mesh asks whether a voxel has been observed more than this.
-constexpr float kFirmWeight = 8;
+constexpr float kFirmWeight = 8;  // Speed.
 
 /// What of a block may change.
 struct FusedPart {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "splitfusion/lib/association/correspondence.h"
-#include "splitfusion/lib/association/live_view.h"
-#include "splitfusion/pipelines/surface.h"
+#include "splitfusion/lib/frame/live_view.h"
+#include "splitfusion/lib/model/surface.h"
 
 namespace splitfusion {
 

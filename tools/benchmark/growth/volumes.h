@@ -1,7 +1,7 @@
 #ifndef SPLITFUSION_TOOLS_BENCHMARK_GROWTH_VOLUMES_H_
 #define SPLITFUSION_TOOLS_BENCHMARK_GROWTH_VOLUMES_H_
 
-#include "splitfusion/pipelines/surface.h"
+#include "splitfusion/lib/model/surface.h"
 
 namespace splitfusion {
 

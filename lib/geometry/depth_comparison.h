@@ -1,0 +1,50 @@
+#ifndef SPLITFUSION_LIB_GEOMETRY_DEPTH_COMPARISON_H_
+#define SPLITFUSION_LIB_GEOMETRY_DEPTH_COMPARISON_H_
+
+#include <cmath>
+#include <cstdint>
+
+#include "splitfusion/lib/geometry/depth_noise.h"
+
+namespace splitfusion {
+
+/// By how much two depths may differ and be of the same surface: some metres
+/// and some standard deviations of the sensor.
+template <typename T>
+struct DepthTolerance {
+  T base;    ///< Metres.
+  T sigmas;  ///< Of DepthSigma().
+
+  /// At z-depth `depth`, metres.
+  template <typename Z>
+  auto At(Z depth) const {
+    return base + sigmas * DepthSigma(depth);
+  }
+};
+
+/// What the live depth of a pixel says about a model point that is seen there.
+enum class DepthState : std::uint8_t {
+  kUnmeasured = 0,  ///< Nothing: there is no live depth, or no model.
+  kObserved = 1,    ///< The point is seen.
+  kOccluded = 2,    ///< Something in front of it is seen.
+  kFree = 3,        ///< Something behind it is seen: it is not there.
+};
+
+/// Compares z-depths, metres; 0 or less: none. `tolerance`: metres.
+template <typename T, typename Tolerance>
+DepthState ClassifyDepth(T live, T model, Tolerance tolerance) {
+  if (!(live > 0 && model > 0)) return DepthState::kUnmeasured;
+  if (live < model - tolerance) return DepthState::kOccluded;
+  return live > model + tolerance ? DepthState::kFree : DepthState::kObserved;
+}
+
+/// Whether neighbouring pixels with these z-depths show different surfaces;
+/// metres.
+template <typename T>
+bool IsDepthJump(T depth, T neighbor, T tolerance) {
+  return std::abs(neighbor - depth) > tolerance;
+}
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_GEOMETRY_DEPTH_COMPARISON_H_

@@ -1,0 +1,53 @@
+#ifndef SPLITFUSION_LIB_MODEL_CANONICAL_PLACES_H_
+#define SPLITFUSION_LIB_MODEL_CANONICAL_PLACES_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/frame/live_view.h"
+
+namespace splitfusion {
+
+/// How much of a surface's model there is at a live point of the surface.
+enum class Coverage : std::uint8_t {
+  kNone,         ///< Not a point of the surface, or not a certain one.
+  kModelled,     ///< The mesh is there.
+  kNearNodes,    ///< No mesh yet, but a node within the graph's spacing.
+  kBeyondNodes,  ///< The graph has to grow to carry it.
+  kOutOfReach,   ///< Too far from every node to belong to the graph.
+};
+
+/// Where the live points of a non-rigid surface belong in its canonical frame.
+///
+/// Each has one place there: that of the nearest point of the warped mesh, or,
+/// where there is none, that to which the nearest node carries it back (Eq. 1
+/// inverted). A warp field is not injective: parts that are astray may lie
+/// upon others. To fuse a live point wherever the warp happens to reach it
+/// would copy the one onto the other, and the copy would be tracked from then
+/// on (the voxel collisions of Dou et al., Fusion4D, 2016).
+///
+/// Blocks of 2x2 pixels share the place of their first certain point.
+struct CanonicalPlaces {
+  cv::Mat_<cv::Vec3f> points;       ///< Metres; NaN where there is none.
+  cv::Mat_<std::uint8_t> coverage;  ///< Coverage of every pixel.
+};
+
+/// Distances that tell one Coverage from the other, metres.
+struct CoverageLimits {
+  double mesh = 0.015;  ///< A modelled point has a vertex as near as this.
+  double reach = 0.35;  ///< Of a node.
+};
+
+/// Finds the places of the live pixels of `surface`. `vertices` and `warped`:
+/// its mesh in the canonical and in the camera frame.
+CanonicalPlaces FindCanonicalPlaces(
+    const LiveView& live, int surface, const DeformationGraph& graph,
+    const std::vector<Eigen::Vector3f>& vertices,
+    const std::vector<Eigen::Vector3f>& warped, const CoverageLimits& limits);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_MODEL_CANONICAL_PLACES_H_

@@ -1,0 +1,254 @@
+#include "splitfusion/lib/model/surface.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/mesh_pieces.h"
+#include "splitfusion/lib/model/canonical_places.h"
+#include "splitfusion/lib/model/observe_surface.h"
+#include "splitfusion/lib/visibility/seen_edges.h"
+#include "splitfusion/lib/visibility/seen_nodes.h"
+
+namespace splitfusion {
+namespace {
+
+/// Median depth of a surface's live pixels, metres; 0 if it has none.
+double MedianDepth(const LiveView& live, int id) {
+  std::vector<float> depths;
+  for (int v = 0; v < live.depth.rows; ++v) {
+    for (int u = 0; u < live.depth.cols; ++u) {
+      if (live.labels(v, u) == id && live.depth(v, u) > 0) {
+        depths.push_back(live.depth(v, u));
+      }
+    }
+  }
+  if (depths.empty()) return 0;
+  const auto middle = depths.begin() + depths.size() / 2;
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
+/// DeformationGraph::seen of a node on which weights of one point hang.
+constexpr double kSightingShare = 1 / kSeenPoints;
+
+/// A live point as near as this to a vertex is on the mesh, voxels.
+constexpr double kModelledVoxels = 3;
+
+/// How far from its place in the canonical frame a live point may be fused,
+/// metres: voxels before and behind it are as far as the truncation, and the
+/// cells in which warped voxels are asked for together have an extent. What is
+/// carried upon a surface from farther away is a part astray: were it to take
+/// the points of that surface, its copy would spread over all of it. That
+/// leaves nothing for bends and for places that are rounded to vertices: the
+/// outermost voxels of some cells are carved only.
+double PlaceTolerance(const TsdfOptions& options) {
+  return options.truncation + 4 * options.voxel_size;
+}
+
+/// Places of live points that belong to a surface, every fourth pixel.
+std::vector<Eigen::Vector3d> PlacesOfSurface(const CanonicalPlaces& found) {
+  constexpr int kPixelStride = 4;
+  std::vector<Eigen::Vector3d> places;
+  for (int v = 0; v < found.points.rows; v += kPixelStride) {
+    for (int u = 0; u < found.points.cols; u += kPixelStride) {
+      const auto coverage = static_cast<Coverage>(found.coverage(v, u));
+      if (coverage == Coverage::kNone || coverage == Coverage::kOutOfReach) {
+        continue;
+      }
+      const cv::Vec3f& p = found.points(v, u);
+      places.emplace_back(p[0], p[1], p[2]);
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+void SurfaceOptions::List(OptionList* list) {
+  list->Part("", &tsdf);
+  list->Number("looks", &looks, Range::AtLeast(1), "frames",
+               "A new part of a deforming surface is meshed once seen in so "
+               "many; in more where it was found empty before.");
+  list->Number("min_piece", &min_piece_area, Range::AtLeast(0), "square metres",
+               "Smaller pieces of the final mesh are left out.");
+  list->Number("mesh_weight", &min_mesh_weight,
+               {0, MeshExtractor::kMaxMinWeight, true}, "",
+               "Observations that a voxel needs to be meshed (about frames at "
+               "close range).");
+  list->Number("growth_reach", &growth_reach, Range::Above(0), "metres",
+               "A deforming surface grows over live points that are no farther "
+               "from a node.");
+}
+
+void SurfaceOptions::Check() const { CheckOptions(*this); }
+
+Surface::Surface(int id, std::string label, SurfaceKind kind, int first_frame,
+                 const SurfaceOptions& options,
+                 const GraphOptions& graph_options)
+    : id_(id),
+      label_(std::move(label)),
+      kind_(kind),
+      first_frame_(first_frame),
+      options_(options),
+      graph_options_(graph_options),
+      volume_(options.tsdf) {}
+
+bool Surface::Initialize(const LiveView& live) {
+  const DepthObservation observation = ObserveSurface(live, id_);
+  AllocateBand(observation, Rigid3d::Identity(), &volume_);
+  // A surface that nothing was seen of could never be tracked.
+  if (volume_.leaf_count() == 0) return false;
+  IntegrateRigid(observation, Rigid3d::Identity(), &volume_);
+  if (!is_ray_cast()) {
+    // One noisy view: anything seen once is surface.
+    mesh_ = ExtractMesh(volume_, 1e-3);
+    if (mesh_.triangles.empty()) return false;
+  }
+  PlaceGraph(live);
+  return true;
+}
+
+void Surface::PlaceGraph(const LiveView& live) {
+  if (kind_ == SurfaceKind::kRigid) {
+    graph_ = MakeRigidGraph(Rigid3d::Identity());
+  } else {
+    planned_node_spacing_ = NodeSpacing(graph_options_, MedianDepth(live, id_));
+    graph_.node_spacing = planned_node_spacing_;
+    GrowGraph(mesh_, graph_options_, &graph_, nullptr);
+  }
+  index_ = std::make_unique<SkinningIndex>(graph_,
+                                           graph_options_.neighbors_per_point);
+  mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
+}
+
+void Surface::Fuse(const LiveView& live) {
+  DepthObservation observation = ObserveSurface(live, id_);
+  if (kind_ == SurfaceKind::kRigid) {
+    const Rigid3d camera_from_canonical = MeanRigidMotion(graph_);
+    AllocateBand(observation, camera_from_canonical, &volume_);
+    IntegrateRigid(observation, camera_from_canonical, &volume_);
+  } else {
+    FuseWarped(live, &observation);
+  }
+}
+
+void Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
+  const CanonicalPlaces found = FindCanonicalPlaces(
+      live, id_, graph_, mesh_.vertices, WarpedVertices(),
+      {kModelledVoxels * options_.tsdf.voxel_size, options_.growth_reach});
+  AllocateAround(PlacesOfSurface(found), options_.tsdf.truncation, &volume_);
+  if (options_.looks > 1) {
+    // So many of these weigh as much as a mesh asks for.
+    cv::Mat_<float> cautious;
+    cv::min(live.confidence, options_.min_mesh_weight / options_.looks,
+            cautious);
+    observation->weight = live.confidence.clone();
+    cautious.copyTo(observation->weight,
+                    found.coverage > static_cast<int>(Coverage::kModelled));
+  }
+  observation->places = found.points;
+  observation->place_tolerance = PlaceTolerance(options_.tsdf);
+  integrator_.Integrate(*observation, *index_, WarpField(graph_),
+                        options_.growth_reach, &volume_);
+}
+
+void Surface::FinishMesh() {
+  mesh_ = WithoutSmallPieces(ExtractMesh(volume_, options_.min_mesh_weight),
+                             options_.min_piece_area);
+  mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
+}
+
+void Surface::UpdateMesh() {
+  mesh_ = mesh_extractor_.Extract(volume_, options_.min_mesh_weight);
+  mesh_skinning_.FollowMesh(*index_, mesh_.vertices,
+                            mesh_extractor_.kept_from());
+  if (kind_ == SurfaceKind::kNonRigid) GrowOverMesh();
+}
+
+void Surface::GrowOverMesh() {
+  if (GrowGraph(mesh_, graph_options_, *index_, mesh_skinning_.supports(),
+                &graph_, &history_) == 0) {
+    return;
+  }
+  auto grown = std::make_unique<SkinningIndex>(
+      graph_, graph_options_.neighbors_per_point);
+  const SkinningChange change(*index_, *grown, graph_);
+  index_ = std::move(grown);
+  integrator_.FollowGraph(*index_, change, volume_);
+  mesh_skinning_.FollowGraph(*index_, mesh_.vertices, change);
+}
+
+void Surface::RecordMotions(int frame, bool tracked, const RecentViews& views) {
+  history_.frames.push_back({frame, tracked, graph_.motions});
+  while (static_cast<int>(graph_.first_seen.size()) < graph_.size()) {
+    graph_.first_seen.push_back(
+        FirstSeen(static_cast<int>(graph_.first_seen.size()), views));
+  }
+  if (kind_ == SurfaceKind::kRigid) return;
+  UpdateLastSeen();
+  UpdateSightings();
+  KeepSeenEdges(history_, last_seen_, &graph_);
+}
+
+void Surface::UpdateLastSeen() {
+  const int now = static_cast<int>(history_.frames.size()) - 1;
+  last_seen_.resize(graph_.size(), now);
+  if (!history_.frames.back().tracked) return;
+  for (std::size_t i = 0; i < graph_.seen.size(); ++i) {
+    if (graph_.seen[i] >= 1) last_seen_[i] = now;
+  }
+}
+
+void Surface::UpdateSightings() {
+  const FrameMotions& now = history_.frames.back();
+  std::vector<std::vector<FrameRun>>& sightings = graph_.sightings;
+  const std::size_t old = std::min(sightings.size(), graph_.seen.size());
+  for (std::size_t i = 0; now.tracked && i < old; ++i) {
+    if (graph_.seen[i] < kSightingShare) continue;
+    FrameRun& last = sightings[i].back();
+    if (last.last == now.frame - 1) {
+      last.last = now.frame;
+    } else {
+      sightings[i].push_back({now.frame, now.frame});
+    }
+  }
+  while (static_cast<int>(sightings.size()) < graph_.size()) {
+    const int first = graph_.first_seen[sightings.size()];
+    sightings.push_back({{first, now.frame}});
+  }
+}
+
+int Surface::FirstSeen(int node, const RecentViews& views) const {
+  int first = history_.frames.back().frame;
+  for (auto motions = history_.frames.rbegin();
+       motions != history_.frames.rend(); ++motions) {
+    const std::optional<Sighting> sighting =
+        views.Look(motions->frame, id_,
+                   graph_.positions[node] + motions->motions[node].translation);
+    if (!sighting) break;
+    if (!motions->tracked) continue;  // Nobody knows where it was.
+    if (*sighting == Sighting::kFreeSpace) break;
+    if (*sighting == Sighting::kSeen) first = motions->frame;
+  }
+  return first;
+}
+
+std::vector<Eigen::Vector3f> Surface::WarpedVertices() const {
+  const WarpField warp(graph_);
+  std::vector<Eigen::Vector3f> warped(mesh_.vertices.size());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, warped.size(), 4096),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          warped[i] = warp.WarpPoint(mesh_skinning()[i], mesh_.vertices[i]);
+        }
+      });
+  return warped;
+}
+
+}  // namespace splitfusion

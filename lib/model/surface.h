@@ -1,0 +1,170 @@
+#ifndef SPLITFUSION_LIB_MODEL_SURFACE_H_
+#define SPLITFUSION_LIB_MODEL_SURFACE_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "splitfusion/lib/base/option_list.h"
+#include "splitfusion/lib/deformation/graph_growth.h"
+#include "splitfusion/lib/deformation/mesh_skinning.h"
+#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/frame/live_view.h"
+#include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/segmentation/label_table.h"
+#include "splitfusion/lib/tsdf/mesh_extractor.h"
+#include "splitfusion/lib/tsdf/tsdf_volume.h"
+#include "splitfusion/lib/tsdf/warped_integration.h"
+#include "splitfusion/lib/visibility/recent_views.h"
+
+namespace splitfusion {
+
+/// How one surface is modelled.
+struct SurfaceOptions {
+  /// Voxels and truncation.
+  TsdfOptions tsdf;
+  /// Observations a voxel needs before it is meshed (weights, about frames at
+  /// close range); at most MeshExtractor::kMaxMinWeight.
+  double min_mesh_weight = 0.05;
+  /// What the mesh of a non-rigid surface does not cover yet is meshed once
+  /// seen in so many frames, and where it had been carved in several times as
+  /// many: a limb that tracking could not follow does not become model twice.
+  /// 1: at once.
+  double looks = 1;
+  /// Pieces of the final mesh smaller than this are left out, square metres:
+  /// noise, and remains of what moved on.
+  double min_piece_area = 0.01;
+  /// A non-rigid surface grows over live points that are no farther than this
+  /// from a node, metres: as far as a newly seen limb reaches in one frame.
+  double growth_reach = 0.35;
+
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
+  void Check() const;
+};
+
+/// One surface of the scene: its volume, its warp field and its history. A
+/// rigid surface has a one-node graph (SplitFusion IV-B) and the same code
+/// path; only the room-sized background is rendered by ray casting instead of
+/// from its mesh.
+class Surface {
+ public:
+  /// `id` 0 is the background. The canonical frame is the camera frame of the
+  /// first fused frame.
+  Surface(int id, std::string label, SurfaceKind kind, int first_frame,
+          const SurfaceOptions& options,
+          const GraphOptions& graph_options = {});
+
+  /// First observation: fills the volume in the camera frame and places the
+  /// graph. Returns whether there is a surface to speak of.
+  bool Initialize(const LiveView& live);
+
+  /// Fuses the live pixels of this surface under the current motions.
+  void Fuse(const LiveView& live);
+
+  /// Extracts the canonical mesh and grows the graph over new parts of it.
+  void UpdateMesh();
+
+  /// Extracts the final canonical mesh, without small pieces.
+  void FinishMesh();
+
+  /// Appends the current motions to the history. `views`, with this frame the
+  /// last one, tell since when the nodes that are new in it have been in view;
+  /// the graph is told how its edges were last seen.
+  void RecordMotions(int frame, bool tracked, const RecentViews& views);
+
+  /// Mesh vertices under the current motions, camera frame.
+  std::vector<Eigen::Vector3f> WarpedVertices() const;
+
+  /// Surface id; 0 is the background.
+  int id() const { return id_; }
+  /// Class name.
+  const std::string& label() const { return label_; }
+  /// Changes the class name.
+  void set_label(const std::string& label) { label_ = label; }
+  /// Whether one motion or many carry it.
+  SurfaceKind kind() const { return kind_; }
+  /// Frame of its first observation.
+  int first_frame() const { return first_frame_; }
+  /// Out of view or missed too long: kept, but neither tracked nor drawn.
+  bool dormant() const { return dormant_; }
+  /// Sets dormant().
+  void set_dormant(bool dormant) { dormant_ = dormant; }
+  /// Whether it is what nothing else is.
+  bool is_background() const { return id_ == 0; }
+  /// Drawn by ray casting, not from the mesh.
+  bool is_ray_cast() const {
+    return is_background() && kind_ == SurfaceKind::kRigid;
+  }
+
+  /// Options in use.
+  const SurfaceOptions& options() const { return options_; }
+  /// As given.
+  const GraphOptions& graph_options() const { return graph_options_; }
+  /// Deformation graph at the current motions.
+  const DeformationGraph& graph() const { return graph_; }
+  /// Node spacing that the options ask for, metres; 0 for a rigid surface. The
+  /// graph's own is wider where GraphOptions::max_nodes would be exceeded.
+  double planned_node_spacing() const { return planned_node_spacing_; }
+  /// The graph, for prediction and tracking.
+  DeformationGraph* mutable_graph() { return &graph_; }
+  /// Skinning by the current graph.
+  const SkinningIndex& skinning_index() const { return *index_; }
+  /// Its volume, canonical frame.
+  const TsdfVolume& volume() const { return volume_; }
+  /// Its mesh, canonical frame; see UpdateMesh() and FinishMesh().
+  const TriangleMesh& mesh() const { return mesh_; }
+  /// Skinning of the mesh's vertices.
+  const std::vector<Skinning>& mesh_skinning() const {
+    return mesh_skinning_.skinning();
+  }
+  /// Motions of all frames so far.
+  const MotionHistory& history() const { return history_; }
+
+  /// Saves or restores all that later frames depend on, see
+  /// lib/base/archive.h; of a surface made with the same arguments but for the
+  /// label. What can be made from the rest bit for bit is left out: skinning,
+  /// and the meshes of the volume's blocks.
+  template <typename Archive>
+  void Serialize(Archive* archive);
+
+ private:
+  void PlaceGraph(const LiveView& live);
+  void FuseWarped(const LiveView& live, DepthObservation* observation);
+  void GrowOverMesh();
+  /// Goes back from the last recorded frame as far as the node is not seen to
+  /// be elsewhere.
+  int FirstSeen(int node, const RecentViews& views) const;
+  /// Notes which nodes the last recorded frame showed: none if it was not
+  /// tracked, but new ones in any case.
+  void UpdateLastSeen();
+  /// Notes the same in DeformationGraph::sightings, where weights of one point
+  /// are enough; new nodes are taken for seen since first_seen.
+  void UpdateSightings();
+  /// Makes what Serialize() leaves out.
+  void RestoreCaches();
+
+  int id_;
+  std::string label_;
+  SurfaceKind kind_;
+  int first_frame_;
+  bool dormant_ = false;
+  SurfaceOptions options_;
+  GraphOptions graph_options_;
+  TsdfVolume volume_;
+  WarpedIntegrator integrator_;
+  DeformationGraph graph_;
+  double planned_node_spacing_ = 0;
+  std::unique_ptr<SkinningIndex> index_;
+  MeshExtractor mesh_extractor_;
+  TriangleMesh mesh_;
+  MeshSkinning mesh_skinning_;
+  MotionHistory history_;
+  std::vector<int> last_seen_;  // Place in history_.frames, by node.
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_MODEL_SURFACE_H_

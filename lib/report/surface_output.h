@@ -1,0 +1,28 @@
+#ifndef SPLITFUSION_LIB_REPORT_SURFACE_OUTPUT_H_
+#define SPLITFUSION_LIB_REPORT_SURFACE_OUTPUT_H_
+
+#include "splitfusion/lib/model/surface.h"
+#include "splitfusion/lib/report/run_paths.h"
+
+namespace splitfusion {
+
+/// Which warped meshes are written.
+struct WarpedOutput {
+  int every = 10;      ///< Flag: of every n-th frame; 0 = none.
+  bool whole = false;  ///< With what was seen only later.
+};
+
+/// Writes RUN/surfaces/NNN_LABEL/{mesh.ply, tsdf.vdb, graph.json, motions.bin}
+/// and, unless the surface is the rigid background, warped/FRAME.ply for every
+/// `warped.every`-th frame since its birth (0 = none): the final mesh carried
+/// into that frame's camera, so that vertex i is the same surface point in all
+/// of them; unless `warped.whole`, with no more than had been seen by then
+/// (SeenTriangles). The mesh must be up to date.
+///
+/// @throw InputError if a file cannot be written.
+void WriteSurface(const RunPaths& paths, const Surface& surface,
+                  const WarpedOutput& warped);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_REPORT_SURFACE_OUTPUT_H_

@@ -1,0 +1,72 @@
+#include "splitfusion/lib/tracking/motion_predictor.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <vector>
+
+namespace splitfusion {
+namespace {
+
+/// Tracked frames whose steps are remembered.
+constexpr std::size_t kSteps = 10;
+
+/// The motion of one frame, if `motion` took several: a part of the turn, and
+/// of the way of `center` (where the motion began).
+Rigid3d MotionOfOneFrame(const Rigid3d& motion, const Eigen::Vector3d& center,
+                         int frames) {
+  if (frames == 1) return motion;
+  const Eigen::AngleAxisd turn(motion.linear());
+  Rigid3d part = Rigid3d::Identity();
+  part.linear() =
+      Eigen::AngleAxisd(turn.angle() / frames, turn.axis()).toRotationMatrix();
+  part.translation() =
+      center + (motion * center - center) / frames - part.linear() * center;
+  return part;
+}
+
+}  // namespace
+
+void MotionPredictor::Record(const Rigid3d& world_from_canonical,
+                             const Eigen::Vector3d& center,
+                             Placement placement) {
+  ++frames_since_;
+  velocity_ = MotionOf(world_from_canonical, center, placement);
+  const bool born = !begun_;
+  begun_ = true;
+  if (placement == Placement::kHidden) known_.reset();
+  if (placement != Placement::kTracked && !born) return;
+  known_ = world_from_canonical;
+  frames_since_ = 0;
+}
+
+Rigid3d MotionPredictor::MotionOf(const Rigid3d& world_from_canonical,
+                                  const Eigen::Vector3d& center,
+                                  Placement placement) {
+  if (placement == Placement::kHidden) return UsualStep();
+  // The jump of a surface that was carried on unseen is no velocity.
+  if (placement == Placement::kNotTracked || !known_) {
+    return Rigid3d::Identity();
+  }
+  const Eigen::Vector3d before = *known_ * center;
+  if (frames_since_ == 1) {
+    steps_.push_back(world_from_canonical * center - before);
+    if (steps_.size() > kSteps) steps_.pop_front();
+  }
+  return MotionOfOneFrame(world_from_canonical * known_->inverse(), before,
+                          frames_since_);
+}
+
+Rigid3d MotionPredictor::UsualStep() const {
+  Rigid3d step = Rigid3d::Identity();
+  if (steps_.empty()) return step;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& s : steps_) values.push_back(s[axis]);
+    const auto middle = values.begin() + values.size() / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    step.translation()[axis] = *middle;
+  }
+  return step;
+}
+
+}  // namespace splitfusion

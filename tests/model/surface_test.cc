@@ -1,0 +1,552 @@
+#include "splitfusion/lib/model/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/render/model_rendering.h"
+#include "splitfusion/lib/report/surface_output.h"
+#include "support/expect_input_error.h"
+#include "support/sample_depth.h"
+#include "support/sample_graphs.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+/// A wall at 1.5 m; `area` of it stands 0.5 m nearer and is surface 1.
+LiveView ViewWithBox(const cv::Rect& area) {
+  cv::Mat_<float> depth = WallDepth(SmallCamera(), 1.5);
+  depth(area).setTo(1.0f);
+  LiveView live = MakeLiveView(SmallCamera(), depth,
+                               PlainColor(SmallCamera(), {10, 200, 30}));
+  live.labels(area).setTo(1);
+  return live;
+}
+
+const cv::Rect kHalf(50, 40, 30, 40), kWhole(50, 40, 60, 40);
+
+Surface MakeBox(SurfaceKind kind) {
+  return Surface(1, "teddy bear", kind, 4, SurfaceOptions());
+}
+
+TEST(Surface, TheRigidBackgroundHasOneNodeAndIsRayCast) {
+  Surface background(0, "background", SurfaceKind::kRigid, 0, {});
+  ASSERT_TRUE(background.Initialize(ViewWithBox(kHalf)));
+  EXPECT_TRUE(background.is_ray_cast());
+  EXPECT_TRUE(background.graph().rigid());
+  background.FinishMesh();
+  for (const Eigen::Vector3f& v : background.mesh().vertices) {
+    EXPECT_NEAR(v.z(), 1.5, 0.01) << "the box is another surface";
+  }
+}
+
+TEST(Surface, NothingSeenIsNoSurface) {
+  LiveView live = ViewWithBox(kHalf);
+  live.labels.setTo(0);
+  EXPECT_FALSE(MakeBox(SurfaceKind::kNonRigid).Initialize(live));
+  live.depth.setTo(0);
+  Surface background(0, "background", SurfaceKind::kRigid, 0, {});
+  EXPECT_FALSE(background.Initialize(live));
+}
+
+TEST(Surface, AnObjectIsMeshedAndCoveredWithNodes) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  EXPECT_FALSE(box.is_ray_cast());
+  ASSERT_GT(box.mesh().vertices.size(), 300u);
+  for (const Eigen::Vector3f& v : box.mesh().vertices) {
+    EXPECT_NEAR(v.z(), 1.0, 0.01);
+  }
+  EXPECT_GT(box.graph().size(), 20);
+  EXPECT_EQ(box.graph().node_spacing, NodeSpacing(box.graph_options(), 1.0));
+  EXPECT_EQ(box.mesh_skinning().size(), box.mesh().vertices.size());
+  Surface rigid = MakeBox(SurfaceKind::kRigid);
+  ASSERT_TRUE(rigid.Initialize(ViewWithBox(kHalf)));
+  EXPECT_TRUE(rigid.graph().rigid());
+}
+
+TEST(Surface, GrowsOverWhatComesIntoView) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true, {});
+  const int nodes = box.graph().size();
+  const std::size_t vertices = box.mesh().vertices.size();
+  for (int frame = 5; frame < 9; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    box.RecordMotions(frame, true, {});
+  }
+  EXPECT_GT(box.graph().size(), 1.5 * nodes);
+  EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
+  for (const FrameMotions& frame : box.history().frames) {
+    EXPECT_EQ(frame.motions.size(), box.graph().positions.size());
+  }
+}
+
+TEST(Surface, AGraphOfFewNodesNeedsNoMoreBlocks) {
+  std::vector<std::size_t> blocks;
+  for (const int max_nodes : {2000, 1}) {
+    GraphOptions graph;
+    graph.max_nodes = max_nodes;
+    Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions(), graph);
+    ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+    box.RecordMotions(4, true, {});
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    blocks.push_back(box.volume().leaf_count());
+  }
+  EXPECT_LE(blocks[1], blocks[0]);
+}
+
+TEST(Surface, WhatIsNewIsMeshedOnceSeenSeveralTimes) {
+  SurfaceOptions options;
+  options.looks = 4;
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, options);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  const auto rightmost = [&] {
+    float x = -1;
+    for (const auto& v : box.mesh().vertices) x = std::max(x, v.x());
+    return x;
+  };
+  const float before = rightmost();
+  for (int frame = 5; frame < 10; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    // A margin of three voxels is on the mesh already.
+    if (frame < 8) {
+      EXPECT_LT(rightmost(), before + 0.1) << frame;
+    }
+  }
+  EXPECT_GT(rightmost(), before + 0.2);
+}
+
+TEST(Surface, PartsAstrayDoNotCopyWhatIsModelledElsewhere) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+  const auto right_end = [&] {
+    float x = -1;
+    for (const auto& v : box.mesh().vertices) x = std::max(x, v.x());
+    return x;
+  };
+  const float before = right_end();
+  // The nodes of the right end go astray: what is empty beside them comes to
+  // lie upon the model of the middle.
+  DeformationGraph* graph = box.mutable_graph();
+  for (int i = 0; i < graph->size(); ++i) {
+    if (graph->positions[i].x() > before - 0.12) {
+      graph->motions[i].translation = {-0.2, 0, 0};
+    }
+  }
+  for (int frame = 5; frame < 15; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    box.RecordMotions(frame, true, {});
+  }
+  EXPECT_LT(right_end(), before + 0.02);
+}
+
+TEST(Surface, VerticesMoveWithTheNodes) {
+  for (const SurfaceKind kind : {SurfaceKind::kRigid, SurfaceKind::kNonRigid}) {
+    Surface box = MakeBox(kind);
+    ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+    const Rigid3d motion = MakeMotion({0.1, 0.2, 0}, {0.3, 0, 0.1});
+    ApplyRigidMotion(motion, box.mutable_graph());
+    const std::vector<Eigen::Vector3f> warped = box.WarpedVertices();
+    for (std::size_t i = 0; i < warped.size(); i += 17) {
+      EXPECT_LT(
+          (warped[i] - motion.cast<float>() * box.mesh().vertices[i]).norm(),
+          1e-5);
+    }
+  }
+}
+
+TEST(Surface, IsWrittenWithConstantVertexOrder) {
+  const TemporaryFolder folder;
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true, {});
+  ApplyRigidMotion(MakeMotion({0, 0, 0}, {0.5, 0, 0}), box.mutable_graph());
+  box.RecordMotions(5, true, {});
+  box.RecordMotions(6, false, {});
+  WriteSurface(RunPaths(folder.Make("run")), box,
+               {/*every=*/2, /*whole=*/false});
+  const std::string at = "run/surfaces/001_teddy_bear/";
+  EXPECT_FALSE(folder.Has(at + "warped/000005.ply"));
+  const TriangleMesh rest = ReadPly(folder / (at + "mesh.ply"));
+  const TriangleMesh born = ReadPly(folder / (at + "warped/000004.ply"));
+  const TriangleMesh later = ReadPly(folder / (at + "warped/000006.ply"));
+  EXPECT_EQ(later.triangles, rest.triangles);
+  ASSERT_EQ(later.vertices.size(), rest.vertices.size());
+  for (std::size_t i = 0; i < rest.vertices.size(); ++i) {
+    EXPECT_LT((born.vertices[i] - rest.vertices[i]).norm(), 1e-5);
+    EXPECT_NEAR(later.vertices[i].x() - rest.vertices[i].x(), 0.5, 1e-5);
+  }
+  EXPECT_GT(TsdfVolume::Read(folder / (at + "tsdf.vdb")).leaf_count(), 0u);
+  EXPECT_EQ(ReadGraph(folder / (at + "graph.json"), nullptr).size(),
+            box.graph().size());
+  EXPECT_EQ(ReadMotions(folder / (at + "motions.bin")).frames.size(), 3u);
+}
+
+TEST(Surface, WarpedMeshesHoldWhatWasSeenByThen) {
+  const TemporaryFolder folder;
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true, {});
+  for (int frame = 5; frame < 10; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    box.RecordMotions(frame, true, {});
+  }
+  box.FinishMesh();
+  EXPECT_EQ(box.graph().first_seen.front(), 4);
+  EXPECT_GT(box.graph().first_seen.back(), 4);
+  EXPECT_EQ(static_cast<int>(box.graph().first_seen.size()),
+            box.graph().size());
+  const auto warped = [&](bool whole, const std::string& frame) {
+    const std::string run = whole ? "whole" : "seen";
+    WriteSurface(RunPaths(folder.Make(run)), box, {/*every=*/1, whole});
+    return ReadPly(folder /
+                   (run + "/surfaces/001_teddy_bear/warped/" + frame + ".ply"));
+  };
+  const std::size_t all = box.mesh().triangles.size();
+  const TriangleMesh first = warped(false, "000004");
+  EXPECT_EQ(first.vertices.size(), box.mesh().vertices.size());
+  EXPECT_GT(first.triangles.size(), 0.35 * all);
+  EXPECT_LT(first.triangles.size(), 0.65 * all) << "half of it was in view";
+  EXPECT_EQ(warped(false, "000009").triangles.size(), all);
+  EXPECT_EQ(warped(true, "000004").triangles.size(), all);
+}
+
+TEST(Surface, GoesBackToWhenANewPartWasFirstSeen) {
+  SurfaceOptions options;
+  options.looks = 4;  // The right half is model only after some frames.
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, options);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  RecentViews views;
+  views.Add(4, ViewWithBox(kHalf));
+  box.RecordMotions(4, true, views);
+  const int nodes = box.graph().size();
+  int born = 0;
+  for (int frame = 5; frame < 12; ++frame) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+    views.Add(frame, ViewWithBox(kWhole));
+    if (born == 0 && box.graph().size() > 1.5 * nodes) born = frame;
+    box.RecordMotions(frame, true, views);
+  }
+  ASSERT_GT(born, 6);
+  const std::vector<int>& first_seen = box.graph().first_seen;
+  // In frame 4 there was the wall, farther away, but beside the left half.
+  const auto in_5 = std::count(first_seen.begin() + nodes, first_seen.end(), 5);
+  const auto in_4 = std::count(first_seen.begin() + nodes, first_seen.end(), 4);
+  EXPECT_EQ(in_4 + in_5, static_cast<int>(first_seen.size()) - nodes);
+  EXPECT_GT(in_5, 2 * in_4);
+  // Since then they are taken for seen, although they were no nodes yet.
+  for (int i = nodes; i < box.graph().size(); ++i) {
+    EXPECT_EQ(box.graph().sightings[i].front().first, first_seen[i]);
+  }
+  EXPECT_GE(box.graph().sightings.back().front().last, born);
+}
+
+TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+  const auto record = [&](int frame, double seen, bool tracked) {
+    DeformationGraph* graph = box.mutable_graph();
+    graph->motions.assign(graph->size(), NodeMotion());
+    Shake(0.005, /*seed=*/frame, graph);
+    graph->seen.assign(graph->size(), seen);
+    box.RecordMotions(frame, tracked, RecentViews());
+    return graph->seen_edges;
+  };
+  const auto seen = record(5, 1, true);
+  ASSERT_EQ(seen.size(), box.graph().neighbors.size());
+  EXPECT_EQ(record(6, 0.5, true), seen) << "half hidden";
+  EXPECT_EQ(record(7, 1, /*tracked=*/false), seen);
+  const auto again = record(8, 1, true);
+  for (int i = 0; i < box.graph().size(); ++i) {
+    for (std::size_t k = 0; k < seen[i].size(); ++k) {
+      EXPECT_GT((again[i][k] - seen[i][k]).norm(), 1e-5);
+    }
+  }
+}
+
+TEST(Surface, NotesTheFramesThatShowedANode) {
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true, RecentViews());
+  const int nodes = box.graph().size();
+  const auto record = [&](int frame, double seen, bool tracked) {
+    box.mutable_graph()->seen.assign(nodes, seen);
+    box.RecordMotions(frame, tracked, RecentViews());
+  };
+  record(5, 1, true);
+  record(6, 0.3, true);  // One correspondence.
+  record(7, 0.2, true);  // None.
+  record(8, 1, /*tracked=*/false);
+  box.Fuse(ViewWithBox(kWhole));
+  box.UpdateMesh();
+  box.Fuse(ViewWithBox(kWhole));
+  box.UpdateMesh();
+  record(9, 1, true);
+  ASSERT_GT(box.graph().size(), nodes);
+  ASSERT_EQ(static_cast<int>(box.graph().sightings.size()), box.graph().size());
+  for (int i = 0; i < nodes; ++i) {
+    const std::vector<FrameRun>& runs = box.graph().sightings[i];
+    ASSERT_EQ(runs.size(), 2u);
+    EXPECT_EQ(runs[0].first, 4);
+    EXPECT_EQ(runs[0].last, 6);
+    EXPECT_EQ(runs[1].first, 9);
+    EXPECT_EQ(runs[1].last, 9);
+  }
+  const FrameRun& young = box.graph().sightings.back().front();
+  EXPECT_EQ(young.first, box.graph().first_seen.back());
+  EXPECT_EQ(young.last, 9);
+}
+
+TEST(Surface, KnowsSeenEdgesOfNewNodes) {
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true, RecentViews());
+  const int nodes = box.graph().size();
+  box.mutable_graph()->seen.assign(nodes, 0);
+  for (int i = 0; i < 6; ++i) {
+    box.Fuse(ViewWithBox(kWhole));
+    box.UpdateMesh();
+  }
+  ASSERT_GT(box.graph().size(), 1.5 * nodes);
+  EXPECT_TRUE(box.graph().seen_edges.empty()) << "of other edges";
+  box.RecordMotions(5, true, RecentViews());
+  ASSERT_EQ(box.graph().seen_edges.size(), box.graph().neighbors.size());
+  for (int i = 0; i < box.graph().size(); ++i) {
+    EXPECT_EQ(box.graph().seen_edges[i].size(),
+              box.graph().neighbors[i].size());
+  }
+}
+
+/// How nodes that are new in frame 9 fare that were in view before: the whole
+/// box is model in frame 9, of which frame 4 showed the left half.
+class FirstSight : public ::testing::Test {
+ protected:
+  FirstSight() : box_(5, "box", SurfaceKind::kNonRigid, 4, Slow()) {
+    EXPECT_TRUE(box_.Initialize(Show(kHalf, 0)));
+    Add(4, Show(kHalf, 0));
+  }
+
+  /// The box is slow to be modelled: by nothing but many looks.
+  static SurfaceOptions Slow() {
+    SurfaceOptions options;
+    options.looks = 4;
+    return options;
+  }
+
+  /// The box moved to the right by some pixels; surface 5.
+  static LiveView Show(cv::Rect area, int right) {
+    area.x += right;
+    LiveView live = ViewWithBox(area);
+    live.labels.setTo(5, live.labels == 1);
+    return live;
+  }
+
+  /// Metres that the box moves by a pixel.
+  static double Step() { return 1.0 / SmallCamera().fx; }
+
+  void MoveTo(int right) {
+    for (NodeMotion& motion : box_.mutable_graph()->motions) {
+      motion.translation = {right * Step(), 0, 0};
+    }
+  }
+
+  void Add(int frame, const LiveView& live, bool tracked = true) {
+    views_.Add(frame, live);
+    box_.RecordMotions(frame, tracked, views_);
+  }
+
+  /// Models the whole box, in frame 9, where it stands.
+  void GrowIn9(int right) {
+    const int nodes = box_.graph().size();
+    MoveTo(right);
+    for (int i = 0; i < 6; ++i) {
+      box_.Fuse(Show(kWhole, right));
+      box_.UpdateMesh();
+    }
+    ASSERT_GT(box_.graph().size(), 1.5 * nodes);
+    Add(9, Show(kWhole, right));
+  }
+
+  /// Of the nodes at the right end, which frame 4 shows in free space.
+  std::set<int> FirstSeen() const {
+    std::set<int> frames;
+    for (int i = 0; i < box_.graph().size(); ++i) {
+      if (box_.graph().positions[i].x() > 0.1) {
+        frames.insert(box_.graph().first_seen[i]);
+      }
+    }
+    return frames;
+  }
+
+  Surface box_;
+  RecentViews views_;
+};
+
+TEST_F(FirstSight, FollowsTheMotionOfEveryFrame) {
+  for (int frame = 5; frame < 9; ++frame) {
+    MoveTo(6 * (frame - 4));
+    Add(frame, Show(kWhole, 6 * (frame - 4)));
+  }
+  GrowIn9(30);
+  EXPECT_EQ(FirstSeen(), std::set<int>({5}));
+}
+
+TEST_F(FirstSight, LooksPastFramesThatHideIt) {
+  LiveView hidden = Show(kWhole, 0);
+  hidden.depth(kWhole).setTo(0.7f);
+  hidden.labels(kWhole).setTo(2);
+  Add(6, Show(kWhole, 0));
+  Add(7, hidden);
+  Add(8, hidden);
+  GrowIn9(0);
+  EXPECT_EQ(FirstSeen(), std::set<int>({6}));
+}
+
+TEST_F(FirstSight, EndsWhereThereIsFreeSpace) {
+  Add(5, Show(kWhole, 0));
+  Add(6, Show(kHalf, 0));
+  Add(7, Show(kWhole, 0));
+  GrowIn9(0);
+  EXPECT_EQ(FirstSeen(), std::set<int>({7}));
+}
+
+TEST_F(FirstSight, LooksPastFramesInWhichTheSurfaceWasNotTracked) {
+  Add(6, Show(kWhole, 0));
+  Add(7, Show(kHalf, 0), /*tracked=*/false);
+  GrowIn9(0);
+  EXPECT_EQ(FirstSeen(), std::set<int>({6}));
+}
+
+/// Background and box as a scene.
+SurfaceMap Scene() {
+  SurfaceMap surfaces;
+  surfaces[0] = std::make_unique<Surface>(0, "background", SurfaceKind::kRigid,
+                                          0, SurfaceOptions());
+  surfaces[1] = std::make_unique<Surface>(1, "box", SurfaceKind::kNonRigid, 0,
+                                          SurfaceOptions());
+  for (auto& [id, surface] : surfaces) {
+    EXPECT_TRUE(surface->Initialize(ViewWithBox(kWhole)));
+  }
+  return surfaces;
+}
+
+TEST(ModelRendering, ReunitesAllSurfacesInTheCameraFrame) {
+  const SurfaceMap surfaces = Scene();
+  const SceneRendering scene =
+      RenderScene(surfaces, SmallCamera(), RayCastOptions());
+  EXPECT_EQ(scene.labels(60, 80), 1);
+  EXPECT_NEAR(scene.map.points(60, 80)[2], 1.0, 0.005);
+  EXPECT_LT(scene.map.normals(60, 80)[2], -0.95);
+  EXPECT_NEAR(scene.map.color(60, 80)[1], 200, 3);  // BGR.
+  EXPECT_EQ(scene.labels(20, 20), 0);
+  EXPECT_NEAR(scene.map.points(20, 20)[2], 1.5, 0.005);
+}
+
+TEST(ModelRendering, WhatMovesBehindTheRoomIsHidden) {
+  const SurfaceMap surfaces = Scene();
+  ApplyRigidMotion(MakeMotion({0, 0, 0}, {-0.05, 0, 1}),
+                   surfaces.at(1)->mutable_graph());
+  const SceneRendering scene =
+      RenderScene(surfaces, SmallCamera(), RayCastOptions());
+  // The room has a hole where the box had hidden it.
+  EXPECT_EQ(scene.labels(60, 30), 0);
+  ApplyRigidMotion(MakeMotion({0, 0, 0}, {-0.3, 0, -1}),
+                   surfaces.at(1)->mutable_graph());
+  EXPECT_EQ(
+      RenderScene(surfaces, SmallCamera(), RayCastOptions()).labels(60, 40), 1);
+}
+
+TEST(ModelRendering, PredictionHasTheFullSize) {
+  const SurfaceMap surfaces = Scene();
+  const MeshRendering rendering =
+      RenderMeshes(surfaces, SmallCamera().Subsampled(2));
+  const SurfacePrediction prediction =
+      ToPrediction(rendering, {}, SmallCamera());
+  EXPECT_EQ(prediction.labels.size(), cv::Size(160, 120));
+  EXPECT_EQ(prediction.labels(60, 80), 1);
+  EXPECT_NEAR(prediction.depth(60, 80), 1.0, 0.005);
+  EXPECT_EQ(prediction.labels(10, 10), 0);
+  EXPECT_EQ(prediction.depth(10, 10), 0);
+  EXPECT_TRUE(prediction.background.empty());
+}
+
+TEST(ModelRendering, PredictionHasTheBackgroundBehindTheSurfaces) {
+  const SurfaceMap surfaces = Scene();
+  const MeshRendering rendering =
+      RenderMeshes(surfaces, SmallCamera().Subsampled(2));
+  const SurfacePrediction prediction = ToPrediction(
+      rendering, RenderBackground(surfaces, SmallCamera(), 2, RayCastOptions()),
+      SmallCamera());
+  EXPECT_EQ(prediction.labels(60, 80), 1);
+  EXPECT_NEAR(prediction.depth(60, 80), 1.0, 0.005);
+  EXPECT_EQ(prediction.labels(10, 10), 0);
+  EXPECT_NEAR(prediction.depth(10, 10), 1.5, 0.01);
+  EXPECT_NEAR(prediction.background(10, 10), 1.5, 0.01);
+}
+
+TEST(ModelRendering, AloneNothingHidesASurface) {
+  SurfaceMap surfaces = Scene();
+  EXPECT_EQ(RenderMeshes(surfaces, SmallCamera()).first_triangle.count(1), 1u);
+  const MeshRendering alone = RenderAlone(*surfaces.at(1), SmallCamera());
+  EXPECT_NEAR(alone.raster.depth(60, 80), 1.0, 0.005);
+  surfaces.at(1)->set_dormant(true);
+  EXPECT_EQ(RenderMeshes(surfaces, SmallCamera()).first_triangle.count(1), 0u);
+}
+
+TEST(ModelRendering, SamplesLieOnTheSurfaceAtTheirPixels) {
+  const SurfaceMap surfaces = Scene();
+  const Rigid3d motion = MakeMotion({0, 0.1, 0}, {0.02, 0, 0.05});
+  for (const auto& [id, surface] : surfaces) {
+    ApplyRigidMotion(motion, surface->mutable_graph());
+  }
+  const MeshRendering rendering =
+      RenderMeshes(surfaces, SmallCamera().Subsampled(2));
+  const auto check = [&](const std::vector<ModelSample>& samples, double z) {
+    ASSERT_GT(samples.size(), 300u);
+    for (const ModelSample& sample : samples) {
+      EXPECT_NEAR(sample.point.z(), z, 0.01);
+      EXPECT_LT(sample.normal.z(), -0.9);
+      EXPECT_EQ(sample.u % 2 + sample.v % 2, 0);
+      const Eigen::Vector2f pixel =
+          SmallCamera().Project<float>(motion.cast<float>() * sample.point);
+      EXPECT_NEAR(pixel.x(), sample.u, 0.05);
+      EXPECT_NEAR(pixel.y(), sample.v, 0.05);
+    }
+  };
+  check(VisibleSamples(rendering, *surfaces.at(1), 2), 1.0);
+  check(BackgroundSamples(
+            RenderBackground(surfaces, SmallCamera(), 2, RayCastOptions()),
+            motion, 2),
+        1.5);
+}
+
+TEST(SurfaceOptions, RefuseValuesOutOfRange) {
+  SurfaceOptions options;
+  options.min_mesh_weight = -1;
+  ExpectInputError([&] { options.Check(); }, "mesh_weight");
+  // Beyond, fusion would not tell that a mesh has to be made anew.
+  options.min_mesh_weight = 8.5;
+  ExpectInputError([&] { options.Check(); },
+                   "mesh_weight = 8.5: expected 0..8, not 0");
+  options.min_mesh_weight = MeshExtractor::kMaxMinWeight;
+  options.Check();
+  options = SurfaceOptions();
+  options.looks = 0.5;
+  ExpectInputError([&] { options.Check(); }, "looks = 0.5");
+  options = SurfaceOptions();
+  options.tsdf.truncation = 0;
+  ExpectInputError([&] { options.Check(); }, "truncation = 0");
+}
+
+}  // namespace
+}  // namespace splitfusion
