@@ -27,7 +27,7 @@ struct SolverOptions {
   std::string preconditioner = "auto";
   /// levenberg_marquardt or dogleg.
   std::string trust_region = "levenberg_marquardt";
-  int threads = 1;         ///< Of Ceres; more change the last digits.
+  int threads = 1;         ///< Of Ceres; with more the last digits vary.
   int max_iterations = 1;  ///< Per association: a new one tells more.
   int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.
   double eta = 0.01;  ///< For cgnr and gn_pcg: relative accuracy of a step.
