@@ -232,7 +232,7 @@ int Surface::FirstSeen(int node, const RecentViews& views) const {
         views.Look(motions->frame, id_,
                    graph_.positions[node] + motions->motions[node].translation);
     if (!sighting) break;
-    if (!motions->tracked) continue;  // Nobody knows where it was.
+    if (!motions->tracked) continue;  // Its place is not known.
     if (*sighting == Sighting::kFreeSpace) break;
     if (*sighting == Sighting::kSeen) first = motions->frame;
   }

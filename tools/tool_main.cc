@@ -157,7 +157,7 @@ bool ParseFlags(int argc, char** argv, const std::string& name,
 }
 
 /// In place of an abort: what a library's own thread throws, for want of memory
-/// or of another thread, nobody can catch.
+/// or of another thread, cannot be caught.
 [[noreturn]] void EndTerminated() {
   const std::string name = gflags::ProgramInvocationShortName();
   try {
