@@ -158,8 +158,8 @@ bool CreateExclusively(const std::string& path, const std::string& text) {
   throw InputError(path + ": cannot be written (" + reason + ")");
 }
 
-/// Removes a stale lock unless it has changed meanwhile. Whoever does so
-/// holds a second lock, so that the lock of one who came first is not removed.
+/// Removes a stale lock unless it has changed meanwhile. A second lock is held
+/// for that, so that the lock of a process that came first is not removed.
 void RemoveStale(const std::string& path, const std::string& text,
                  const LockOptions& options) {
   const std::string guard = path + ".takeover";
