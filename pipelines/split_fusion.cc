@@ -306,7 +306,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
     const auto found = surfaces_.find(id);
-    // What was dropped or merged is no more, even if it was born anew.
+    // Dropped and merged surfaces are gone, even if one was born anew.
     const bool gone =
         surface_report.state == "dropped" || surface_report.state == "merged";
     if (gone || found == surfaces_.end()) continue;

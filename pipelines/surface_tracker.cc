@@ -68,7 +68,8 @@ TrackingStage FittedStage(const TrackingStage& stage, int min_samples,
 
 /// Radius of a round's trust region: it goes on from the round before, as the
 /// rounds of a stage are one minimisation with ever newer correspondences. It
-/// does not outgrow the first one: what hangs on little would swing.
+/// does not outgrow the first one: parts with few edges to the rest would
+/// swing.
 double StartRadius(const std::vector<TrackingRound>& rounds,
                    const std::string& stage, double first) {
   if (rounds.empty() || rounds.back().stage != stage) return first;

@@ -40,9 +40,9 @@ struct SolverOptions {
   /// Converged when the step is below (radians, metres).
   double parameter_tolerance = 1e-8;
   /// Of the trust region: Levenberg-Marquardt raises the diagonal of J^T J by
-  /// itself / radius. With Ceres' own 1e4, hidden parts that hang on little
-  /// swing by up to a right angle in a frame; with 1e2, limbs in view are
-  /// followed too slowly.
+  /// itself / radius. With Ceres' own 1e4, hidden parts with few edges to
+  /// the rest swing by up to a right angle in a frame; with 1e2, limbs in view
+  /// are followed too slowly.
   double initial_radius = 1e3;
   bool full_report = false;  ///< Keep Ceres' FullReport() text.
 
