@@ -17,11 +17,11 @@ void PipelineOptions::List(OptionList* list) {
              "The energy, Eq. 4: NAME(weight=,loss=,scale=) ...")
       .common = true;
   list->Switch("split_scene", &split_scene,
-               "Split the scene; else one surface holds all of it.");
+               "Split the scene; otherwise one surface holds all of it.");
   list->Switch("model_objects", &model_objects,
-               "Model what moves; else it is only cut out.");
+               "Model what moves; otherwise it is only cut out.");
   list->Switch("deform_objects", &deform_objects,
-               "What moves deforms; else it is rigid.");
+               "What moves deforms; otherwise it is rigid.");
   list->Switch("deform_background", &deform_background,
                "The background deforms, too.");
   list->Number("render_stride", &render_stride, {1, 8}, "pixels",
@@ -35,16 +35,16 @@ void PipelineOptions::List(OptionList* list) {
     }
   }
   list->Number("min_tracked_pixels", &min_tracked_pixels, Range::AtLeast(1),
-               "pixels", "With fewer live ones a surface is not tracked.");
+               "pixels", "A surface with fewer pixels in view is not tracked.");
   list->Number("min_exposure", &min_exposure, Range::Share(), "",
-               "Surfaces are carried on, not tracked, while less of them is in "
-               "view beside others; 0 = never.")
+               "With a smaller visible fraction a surface is occluded: "
+               "predicted, not tracked; 0 = never.")
       .common = true;
   list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
-               "of the image", "A surface is modelled once it covers so much.");
+               "of the image", "A surface is modelled once it covers as much.");
   list->Number("max_lost_young", &max_lost_young, Range::AtLeast(1), "frames",
-               "A surface that is lost so often on end, and was not tracked "
-               "more often, begins anew.");
+               "A surface that is lost in so many frames in a row, and was "
+               "tracked in no more, begins anew.");
   list->Part("", &graph);
   list->Part("background_", &background);
   list->Part("object_", &object);

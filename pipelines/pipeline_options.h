@@ -44,7 +44,7 @@ struct PipelineOptions {
   double min_exposure = 0.25;
   /// Fraction of the image a surface has to cover before it is modelled.
   double min_birth_area = 0.008;
-  /// A surface that is lost in as many frames on end, with no more frames
+  /// A surface that is lost in as many frames in a row, with no more frames
   /// tracked than that, begins anew.
   int max_lost_young = 5;
 

@@ -44,7 +44,7 @@ struct RunProgress {
   double seconds_left = 0;  ///< At the pace so far.
 };
 
-/// What a run tells whoever started it; all may be empty.
+/// What a run tells its caller; all may be empty.
 struct SequenceRunHooks {
   std::function<bool()> interrupted;              ///< Whether to stop here.
   std::function<void(const RunProgress&)> shown;  ///< After every frame.

@@ -84,7 +84,7 @@ void SplitFusion::Split(const PreparedFrame& prepared, FrameReport* report) {
   report->decisions = std::move(split.decisions);
   FollowInstances(report);
   report->split_seconds = stopwatch.Restart();
-  if (!AllDrawn(surfaces_, rendering_)) {  // Somebody came back.
+  if (!AllDrawn(surfaces_, rendering_)) {  // A surface was revived.
     rendering_ =
         RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
     report->render_seconds += stopwatch.Restart();
@@ -123,7 +123,7 @@ void SplitFusion::TrackObjects(FrameReport* report) {
       TrackObject(surfaces_.at(object.id).get(), &object);
     }
   });
-  // One after the other: who is found elsewhere changes the rendering.
+  // One after the other: a surface found elsewhere changes the rendering.
   for (SurfaceReport& object : objects) {
     if (object.state.empty() || object.state == "lost") {
       TrackWhereSeen(surfaces_.at(object.id).get(), &object);
@@ -308,7 +308,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
     const auto found = surfaces_.find(id);
-    // What was dropped or merged is no more, even if it was born anew.
+    // Dropped and merged surfaces are gone, even if one was born anew.
     const bool gone =
         surface_report.state == "dropped" || surface_report.state == "merged";
     if (gone || found == surfaces_.end()) continue;

@@ -68,7 +68,8 @@ TrackingStage FittedStage(const TrackingStage& stage, int min_samples,
 
 /// Radius of a round's trust region: it goes on from the round before, as the
 /// rounds of a stage are one minimisation with ever newer correspondences. It
-/// does not outgrow the first one: what hangs on little would swing.
+/// does not outgrow the first one: parts with few edges to the rest would
+/// swing.
 double StartRadius(const std::vector<TrackingRound>& rounds,
                    const std::string& stage, double first) {
   if (rounds.empty() || rounds.back().stage != stage) return first;
@@ -116,41 +117,46 @@ std::vector<TrackingStage> TrackerOptions::NonRigidStages() const {
 
 void TrackerOptions::List(OptionList* list) {
   list->Number("rigid_distance", &rigid_distance, Range::Above(0), "metres",
-               "First gate of the rigid stages; the last has half of it.")
+               "Largest distance of pairs in the first rigid stage; the last "
+               "has half of it.")
       .common = true;
-  list->Number("rigid_angle", &rigid_angle, {0, 180, true}, "degrees",
-               "First gate of normals in the rigid stages; the last has two "
-               "thirds of it.")
+  list->Number(
+          "rigid_angle", &rigid_angle, {0, 180, true}, "degrees",
+          "Largest angle of normals in the first rigid stage; the last has "
+          "two thirds of it.")
       .common = true;
   list->Number("non_rigid_distance", &non_rigid_distance, Range::Above(0),
                "metres",
-               "First gate of the non-rigid stages; the last has half of it.")
+               "Largest distance of pairs in the first non-rigid stage; the "
+               "last has half of it.")
       .common = true;
   list->Number("non_rigid_angle", &non_rigid_angle, {0, 180, true}, "degrees",
-               "Gate of normals in the non-rigid stages.")
+               "Largest angle of normals in the non-rigid stages.")
       .common = true;
   list->Number("grazing_angle", &grazing_angle, {0, 90, true}, "degrees",
                "Between live normal and view ray; beyond, depth is not used.");
-  list->Number("prior_anneal", &prior_anneal, Range::AtLeast(1), "",
-               "Of temporal_arap: its weight falls from this - 1 times the one "
-               "given to 0 over the non-rigid rounds.")
+  list->Number(
+          "prior_anneal", &prior_anneal, Range::AtLeast(1), "",
+          "Over the non-rigid rounds of a frame, anneal falls from this to "
+          "1; temporal_arap has (anneal - 1) times its weight.")
       .common = true;
   list->Number("settled", &settled, Range::AtLeast(0), "",
-               "A stage ends when the cost changes by less, relative.");
+               "A stage ends when the relative change of the cost is smaller.");
   list->Number("min_correspondences", &min_correspondences, Range::AtLeast(6),
-               "pairs", "Fewer in the last round: lost.");
-  list->Number(
-      "min_accepted", &min_accepted, Range::Share(), "",
-      "Less of the samples on live depth of the surface paired: lost.");
+               "pairs", "With fewer in the last round a surface is lost.");
+  list->Number("min_accepted", &min_accepted, Range::Share(), "",
+               "With a smaller share of its samples on live depth paired, a "
+               "surface is lost.");
   list->Number("min_fit", &min_fit, Range::Share(), "",
-               "Less of a deforming surface in view lies on it: lost.");
+               "With a smaller share of its points in view on live depth, a "
+               "deforming surface is lost.");
   list->Number("max_translation", &max_translation, Range::Above(0), "metres",
-               "Farther from the prediction: lost.");
+               "Farther from the prediction, a surface is lost.");
   list->Number("max_rotation", &max_rotation, {0, 180, true}, "degrees",
-               "Farther from the prediction: lost.");
+               "Rotated farther from the prediction, a surface is lost.");
   list->Number("velocity_gain", &velocity_gain, Range::Above(0), "",
-               "Constant velocity is believed if its misfit is below this "
-               "fraction of that of standing still.");
+               "Tracking starts from constant velocity if its misfit is below "
+               "this fraction of that of standing still.");
   list->Number("min_samples", &min_samples, Range::AtLeast(0), "",
                "A surface with fewer samples is tracked at half the stride.");
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Configures and builds the release preset into build/release.
 #   tools/build_release.sh [-DOPTION=VALUE ...] [--target NAME ...]
-# Warnings are errors, so that whoever calls this builds everything once.
+# Warnings are errors, so that every caller builds everything once.
 # On a terminal the tools speak for themselves; otherwise only warnings, errors
 # and one closing line are printed.
 set -euo pipefail

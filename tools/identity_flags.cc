@@ -22,9 +22,7 @@
 #include "splitfusion/lib/report/run_paths.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 
-DEFINE_string(set, "",
-              "KEY=VALUE; ...: flags, or terms.NAME.KEY for one number of the "
-              "energy, as in terms.arap.weight=4.");
+DEFINE_string(set, "", "KEY=VALUE; ...: any flags, or terms.arap.weight=4.");
 DECLARE_string(class_names);
 DECLARE_int32(at);
 DECLARE_string(from);

@@ -50,7 +50,7 @@ if ((${#missing[@]})); then
 fi
 
 # Sparse Cholesky takes its dense kernels from the BLAS that the alternatives
-# point to: OpenBLAS, unless somebody chose another one by hand.
+# point to: OpenBLAS, unless another one was chosen by hand.
 blas="/usr/lib/$(g++ -print-multiarch)"
 for name in libblas.so.3 liblapack.so.3; do
   if [[ "$(readlink -f "$blas/$name")" != *openblas* ]]; then

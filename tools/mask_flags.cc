@@ -17,11 +17,10 @@
 #include "splitfusion/lib/segmentation/recording_segmenter.h"
 
 DEFINE_string(masks, "auto",
-              "Folder of instance masks, none, or auto: of --model if given, "
-              "else beside the sequence.");
+              "A folder, none, or auto (--model, or beside it).");
 DEFINE_string(mask_kind, "non_rigid",
-              "Of masks without classes: non_rigid or rigid.");
-DEFINE_string(labels, "", "File `class, rigid|non_rigid` a line.");
+              "Masks without classes are: non_rigid or rigid.");
+DEFINE_string(labels, "", "File with lines `class, rigid|non_rigid`.");
 DECLARE_string(class_names);
 DECLARE_string(sequence);
 

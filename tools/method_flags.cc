@@ -81,11 +81,12 @@ std::string MethodOptionsMarkdown() {
   std::string text =
       "# Options of the method\n\n"
       "Every option of the method is a flag of `sf_run` and a key of "
-      "experiments\n(docs/experiments.md). Presets change defaults; what is "
-      "given on the command\nline or in a flagfile counts before the preset. "
-      "Made by `sf_run --print_options`.\n";
+      "experiments\n(docs/experiments.md). Presets change defaults; flags on "
+      "the command line or in\na flagfile override the preset. Made by `sf_run "
+      "--print_options`.\n";
   for (const bool common : {true, false}) {
-    text += std::string("\n## ") + (common ? "Common ones" : "All others") +
+    text += std::string("\n## ") +
+            (common ? "Common options" : "Other options") +
             "\n\n| option | default | range | meaning |\n|---|---|---|---|\n";
     for (const Option& option : Storage().default_list.options()) {
       if (option.common == common) text += Row(option);

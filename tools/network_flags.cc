@@ -9,12 +9,13 @@
 #include "splitfusion/lib/base/error.h"
 
 DEFINE_string(model, "", "Network that makes the masks, an ONNX file.");
-DEFINE_string(decoder, "", "Of the network's outputs: yolov8seg or yolact.");
-DEFINE_string(network_size, "", "Its input, WxH; empty = as the model says.");
-DEFINE_string(class_names, "", "File, one class a line; empty = COCO's 80.");
-DEFINE_double(score_threshold, 0.25, "Lower scores are not detections.");
-DEFINE_double(nms_threshold, 0.5, "Largest overlap (IoU) within a class.");
-DEFINE_int32(top_k, 100, "Instances in a frame at most.");
+DEFINE_string(decoder, "", "Kind of network: yolov8seg or yolact.");
+DEFINE_string(network_size, "", "Size of its input, WxH; empty = the model's.");
+DEFINE_string(class_names, "", "File with a class a line; empty = COCO's 80.");
+DEFINE_double(score_threshold, 0.25,
+              "Detections with a lower score are dropped.");
+DEFINE_double(nms_threshold, 0.5, "Largest IoU of two detections of a class.");
+DEFINE_int32(top_k, 100, "Detections in a frame at most.");
 
 namespace splitfusion {
 namespace {

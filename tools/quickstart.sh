@@ -36,5 +36,5 @@ The result is in $run:
   trajectory.txt                 camera poses, TUM format
   surfaces/*/mesh.ply            one mesh a surface; surfaces/*/warped/: in motion
   pictures/                      reconstruction beside the input
-Next: README.md, "Your own data".
+Next: docs/your_data.md.
 END

@@ -17,13 +17,12 @@
 DEFINE_string(preset, "splitfusion",
               "splitfusion, kinectfusion, dynamicfusion, cofusion or "
               "background_only.");
-DEFINE_string(intrinsics, "",
-              "fx,fy,cx,cy,width,height; replaces the calibration file.");
-DEFINE_double(depth_scale, 0, "Depth units a metre; 0 = calibration file.");
+DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
+DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
 DEFINE_bool(skip_bad_frames, false,
             "Leave out frames whose images are missing or broken.");
-DEFINE_double(min_depth, 0.4, "Metres; nearer depth is dropped.");
-DEFINE_double(max_depth, 5.0, "Metres; farther depth is dropped.");
+DEFINE_double(min_depth, 0.4, "Nearer depth is dropped; metres.");
+DEFINE_double(max_depth, 5.0, "Farther depth is dropped; metres.");
 
 namespace splitfusion {
 namespace {

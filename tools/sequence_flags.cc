@@ -8,9 +8,9 @@
 #include "splitfusion/lib/base/error.h"
 
 DEFINE_string(sequence, "", "Folder of the sequence, TUM RGB-D layout.");
-DEFINE_int32(first_frame, 0, "Frames before it are skipped.");
+DEFINE_int32(first_frame, 0, "Index of the first frame to read.");
 DEFINE_int32(max_frames, 0, "Frames read at most; 0 = all.");
-DEFINE_int32(threads, 2, "Threads of all but Ceres; 0 = one a core.");
+DEFINE_int32(threads, 2, "Threads of all but Ceres; 0 = one for each core.");
 
 namespace splitfusion {
 int ThreadsFromFlags() {

@@ -27,28 +27,33 @@
 DEFINE_string(sequences, "", "Folders or list files (one folder a line).");
 DEFINE_string(grid, "", "What varies: \"KEY=V,V; KEY=V,V\".");
 DEFINE_string(set, "", "Options of all runs: \"KEY=V; KEY=V\".");
-DEFINE_int32(repeat, 0, "Runs of each, voxels moved by millionths; 0 = 1.");
-DEFINE_string(experiment, "", "JSON file of all that (docs/experiments.md).");
+DEFINE_int32(repeat, 0, "Runs of each, voxels changed by millionths; 0 = 1.");
+DEFINE_string(experiment, "", "JSON file with all of these settings.");
 DEFINE_string(rows, "", "Only these rows of --experiment, by name.");
 DEFINE_string(output, "", "Folder of the experiment.");
-DEFINE_int32(random, 0, "Random points; --grid: lo..hi, log:lo..hi, lists.");
-DEFINE_int32(seed, 1, "Of --random.");
-DEFINE_string(ground_truth, "auto", "auto, none, or a folder.");
+DEFINE_int32(random, 0, "Random points of --grid with lo..hi, log:lo..hi.");
+DEFINE_int32(seed, 1, "Seed of --random.");
+DEFINE_string(ground_truth, "auto",
+              "auto (beside the sequence), none, or a folder.");
 DEFINE_string(evaluate, "", "Flags of sf_evaluate: \"KEY=V; KEY=V\".");
 DEFINE_int32(jobs, 1, "Runs at the same time.");
-DEFINE_int32(threads, 0, "Of a run; 0 = cores / jobs.");
-DEFINE_double(max_wall_minutes, 0, "Of a run, then it is killed; 0 = any.");
-DEFINE_double(max_cpu_minutes, 0, "The same, of all its threads.");
-DEFINE_double(max_memory_gb, 0, "The same, resident, 1e9 bytes.");
+DEFINE_int32(threads, 0, "Threads of each run; 0 = cores / jobs.");
+DEFINE_double(max_wall_minutes, 0, "A longer run is killed; 0 = no limit.");
+DEFINE_double(max_cpu_minutes, 0,
+              "A run with more CPU time is killed; 0 = no limit.");
+DEFINE_double(max_memory_gb, 0, "A run with more memory is killed; 1e9 bytes.");
 DEFINE_bool(fail_fast, false, "Start nothing after a failure.");
 DEFINE_bool(keep_failed, false, "Do not try failed runs again.");
 DEFINE_bool(overwrite, false, "Repeat finished runs.");
-DEFINE_bool(dry_run, false, "Print what would be done, and why.");
-DEFINE_string(rows_csv, "", "Finished rows; run: are done, collect: added.");
-DEFINE_string(baseline, "", "Row or \"KEY=V\" that differences refer to.");
-DEFINE_string(foreign, "", "\"NAME:SEQUENCE=TRAJECTORY[,MESH.ply]; ...\".");
-DEFINE_string(run_program, "", "Another sf_run than the one beside this.");
-DEFINE_string(evaluate_program, "", "Another sf_evaluate.");
+DEFINE_bool(dry_run, false, "Print what would be run, and why.");
+DEFINE_string(rows_csv, "", "File of finished rows, read and added to.");
+DEFINE_string(baseline, "",
+              "Row, or \"KEY=V\", that others are compared with.");
+DEFINE_string(foreign, "",
+              "Others' \"NAME:SEQUENCE=TRAJECTORY[,MESH.ply]; ...\"");
+DEFINE_string(run_program, "", "Another sf_run than the one beside sf_batch.");
+DEFINE_string(evaluate_program, "",
+              "Another sf_evaluate than the one beside it.");
 
 namespace splitfusion {
 namespace {
@@ -60,8 +65,9 @@ constexpr char kUsage[] =
     "[--jobs=N]\n"
     "  sf_batch status --output=DIR     what is done, what failed\n"
     "  sf_batch collect --output=DIR    tables: results.csv, results.sqlite\n"
-    "KEY: a flag of sf_run, or terms.NAME.KEY; V with , or ; in double "
-    "quotes.\n";
+    "KEY: a flag of sf_run, or terms.NAME.KEY. A value V with , or ; in "
+    "double\n"
+    "quotes. See docs/experiments.md.\n";
 
 /// A program beside this one, unless a flag names another.
 std::string Program(const std::string& flag, const std::string& name) {

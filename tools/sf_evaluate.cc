@@ -29,41 +29,44 @@ DEFINE_string(ground_truth, "",
               "with --trajectory: a TUM file.");
 DEFINE_string(trajectory, "", "TUM file to compare with --ground_truth.");
 DEFINE_string(mesh, "", "PLY to compare with --ground_truth_mesh.");
-DEFINE_string(ground_truth_mesh, "", "PLY of the truth, same frame.");
+DEFINE_string(ground_truth_mesh, "", "PLY of the truth, in the same frame.");
 DEFINE_string(output, "",
               "JSON file of the result; default RUN/evaluation.json.");
-DEFINE_bool(check_only, false, "Check the flags, compare nothing.");
-DEFINE_double(max_time_difference, 0.02, "Of matching poses, seconds.");
-DEFINE_int32(samples, 100000, "Random surface points, each direction.");
-DEFINE_double(max_distance, 0.3, "Surface distances are clipped to it, m.");
+DEFINE_bool(check_only, false, "Check the flags and end.");
+DEFINE_double(max_time_difference, 0.02, "Between matching poses; seconds.");
+DEFINE_int32(samples, 100000, "Random points on each of two surfaces.");
+DEFINE_double(max_distance, 0.3,
+              "Larger surface distances count as this; metres.");
 DEFINE_double(min_seen, 3,
-              "Completeness over triangles with vertex property seen >= it.");
+              "Completeness counts true triangles whose property seen is not "
+              "less.");
 DEFINE_int32(label, -1,
              "Only triangles of the static truth with this vertex property "
              "label (0 = room without furniture); -1 = all.");
 DEFINE_int32(depth_every, 10,
-             "Model against live depth in every n-th frame; 0 = not.");
+             "Compare with live depth in every n-th frame; 0 = never.");
 DEFINE_bool(whole_model, false,
-            "In every frame the whole final model, with what the camera saw "
-            "of it only later.");
+            "Judge the whole final model in every frame, also what was seen "
+            "only later.");
 DEFINE_bool(with_unknown, true,
-            "In every frame all that had been seen by then, with parts of "
-            "which nobody knows where they are; the default.");
+            "Judge all that had been seen by each frame, also parts whose "
+            "place is not known any more.");
 DEFINE_bool(known_only, false,
-            "In every frame only what is known of it: seen lately, or firmly "
-            "held by what was.");
+            "Judge only parts that were seen lately or are closely tied to "
+            "such parts.");
 DEFINE_string(track_query, "",
-              "CSV id,frame,x,y,z (camera frame, m): points of one frame to "
-              "follow through --run.");
-DEFINE_string(track_output, "", "CSV for the followed points.");
-DEFINE_int32(track_frames, 30, "Frames through which points are followed.");
+              "CSV id,frame,x,y,z (camera frame, metres): points of one frame "
+              "to follow through --run.");
+DEFINE_string(track_output, "", "CSV to write the followed points to.");
+DEFINE_int32(track_frames, 30,
+             "Number of frames through which they are followed.");
 DEFINE_string(track_frame, "-1",
-              "Frames in which the true track points are given, as 30,46,60; "
-              "-1 = the one in which most are visible.");
+              "Frames in which true points are taken, as 30,46,60; -1 = the "
+              "one in which most are visible.");
 DEFINE_int32(presence_every, 1,
-             "Presence and shape of the models in every n-th frame; 0 = not.");
+             "Presence and shape in every n-th frame; 0 = never.");
 DEFINE_int32(plain_view_pixels, 8000,
-             "Somebody with more live pixels is in plain view.");
+             "An instance with more pixels is in plain view.");
 
 namespace splitfusion {
 namespace {

@@ -17,7 +17,7 @@
 DEFINE_string(pictures, "", "CAPTION:FILE,CAPTION:FILE,...");
 DEFINE_string(output, "", "Picture to write; .jpg or .png.");
 DEFINE_int32(columns, 3, "Pictures in a row.");
-DEFINE_int32(tile_width, 0, "Pixels; 0 = that of the first picture.");
+DEFINE_int32(tile_width, 0, "Width of each; 0 = that of the first picture.");
 
 namespace splitfusion {
 namespace {

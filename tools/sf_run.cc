@@ -30,20 +30,19 @@
 DEFINE_string(output, "", "Run directory to write.");
 DEFINE_bool(overwrite, false, "Replace an earlier run in --output.");
 DEFINE_bool(keep_same, false,
-            "With --overwrite: but not a finished run of the same identity.");
+            "With --overwrite: keep a run with the same result.");
 DEFINE_bool(resume, true, "Go on with an unfinished run of the same options.");
 DEFINE_int32(checkpoint_every, 0,
-             "Frames between states; 0 = by time, -1 = never.");
-DEFINE_bool(keep_checkpoints, false,
-            "Keep all states in RUN/checkpoints, for --from.");
-DEFINE_string(from, "", "Run of --keep_checkpoints to start from.");
-DEFINE_int32(at, 0, "First frame after that state.");
-DEFINE_bool(print_options, false, "Print all options of the method, no run.");
-DEFINE_bool(print_identity, false, "Print what decides the result, no run.");
+             "Frames between checkpoints; 0 = by time, -1 = never.");
+DEFINE_bool(keep_checkpoints, false, "Keep all checkpoints, for --from.");
+DEFINE_string(from, "", "Run with --keep_checkpoints to start from.");
+DEFINE_int32(at, 0, "First frame to compute after --from.");
+DEFINE_bool(print_options, false, "Print all options of the method, and end.");
+DEFINE_bool(print_identity, false, "Print what decides the result, and end.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
 DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,
-            "Warped meshes hold what was seen only later, too.");
+            "Warped meshes show also what was seen only later.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
 DECLARE_string(masks);
 DECLARE_string(preset);
@@ -185,7 +184,7 @@ int main(int argc, char** argv) {
   splitfusion::RegisterMethodFlags();
   return splitfusion::ToolMain(
       argc, argv,
-      "Tracks and maps the rigid and non-rigid surfaces of an RGB-D sequence.\n"
+      "Tracks and maps the rigid and non-rigid objects of an RGB-D sequence.\n"
       "sf_run --sequence=DIR --output=RUN [--masks=DIR|none] [--preset=NAME]\n"
       "       [--model=FILE.onnx --decoder=yolov8seg|yolact]\n",
       splitfusion::RunSequence);

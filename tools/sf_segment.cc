@@ -25,8 +25,8 @@
 #include "splitfusion/lib/sequence/tum_reader.h"
 #include "tool_main.h"
 
-DEFINE_string(output, "", "Folder of masks to write, or to go on with.");
-DEFINE_bool(overwrite, false, "Begin anew what is in --output.");
+DEFINE_string(output, "", "Folder of masks to write or to complete.");
+DEFINE_bool(overwrite, false, "Replace the masks in --output.");
 DEFINE_string(overlays, "", "Folder for pictures of the masks; empty = none.");
 DECLARE_string(sequence);
 
@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 
 constexpr char kUsage[] =
     "Makes the instance masks of an RGB-D sequence with a network, for\n"
-    "sf_run --masks=MASKS. Stopped and started again, it goes on.\n"
+    "sf_run --masks=MASKS. The same command resumes an interrupted one.\n"
     "  sf_segment --sequence=DIR --model=FILE.onnx --decoder=yolov8seg|yolact\n"
     "             --output=MASKS [--overlays=DIR]\n";
 

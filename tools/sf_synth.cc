@@ -13,18 +13,18 @@
 #include "tool_main.h"
 
 DEFINE_string(output, "", "Folder to write; it must be new or empty.");
-DEFINE_bool(overwrite, false, "Replace a sequence of sf_synth that is there.");
+DEFINE_bool(overwrite, false, "Replace an earlier sequence of sf_synth.");
 DEFINE_string(scene, "room_person",
               "room_person (room, walking person, soft toy), room, person, "
               "soft_object (alone, nothing around).");
 DEFINE_int32(frames, 90, "Number of frames, at 30 Hz.");
 DEFINE_int32(width, 640, "Image width in pixels.");
 DEFINE_int32(height, 480, "Image height in pixels.");
-DEFINE_uint32(seed, 1, "Of textures, camera shake, noise and masks.");
+DEFINE_uint32(seed, 1, "Seed of textures, camera shake, noise and masks.");
 DEFINE_string(noise, "on", "Kinect-like depth and colour noise: on or off.");
 DEFINE_string(masks, "noisy",
               "Instance masks: noisy (as a detector's) or exact.");
-DEFINE_double(camera_motion, 1, "Scale of the camera's path; 0 = tripod.");
+DEFINE_double(camera_motion, 1, "Scale of the camera's path; 0 = fixed.");
 DEFINE_double(subject_speed, 1, "Speed of person and toy; 0 = still.");
 DEFINE_int32(track_points, 500, "Tracked points per non-rigid instance.");
 DEFINE_int32(mesh_every, 25, "Frames between posed ground-truth meshes.");

@@ -74,11 +74,11 @@ std::string Described(const Flags& flags) {
   return text;
 }
 
-/// Names and defaults only, in lines up to kColumns where they fit.
+/// Names only, in lines up to kColumns.
 std::string Listed(const Flags& flags) {
   std::string text, line;
   for (const auto& flag : flags) {
-    const std::string entry = "  " + FlagText(flag);
+    const std::string entry = "  --" + flag.name;
     if (!line.empty() && line.size() + entry.size() > kColumns) {
       text += line + '\n';
       line.clear();
@@ -101,24 +101,24 @@ std::map<std::string, Flags> FlagsByFile() {
   return by_file;
 }
 
-/// Help that fits a screen: of files with many flags, those of model, tracking
-/// and solver, the names only.
+/// Help that fits a screen: of files with many flags the names only.
 void PrintHelp(const std::string& name, const std::string& usage) {
-  constexpr std::size_t kMany = 20;
   std::map<std::string, Flags> files = FlagsByFile();
   std::cout << usage << Described(files[name]);
   files.erase(name);
   const bool has_more = files.erase("method_details") > 0;
+  const std::size_t many = has_more ? 7 : 20;
   for (const auto& [file, flags] : files) {
     std::cout << file.substr(0, file.find('_'));
-    if (flags.size() < kMany) {
+    if (flags.size() < many) {
       std::cout << ":\n" << Described(flags);
     } else {
       std::cout << " (--helpon=" << file << " describes them):\n"
                 << Listed(flags);
     }
   }
-  std::cout << (has_more ? "More of the method: --helpon=method_details. " : "")
+  std::cout << (has_more ? "More of the method: --helpon=method_details.\n"
+                         : "")
             << "Also --flagfile=FILE (one flag a line), --helpfull.\n";
 }
 
@@ -157,7 +157,7 @@ bool ParseFlags(int argc, char** argv, const std::string& name,
 }
 
 /// In place of an abort: what a library's own thread throws, for want of memory
-/// or of another thread, nobody can catch.
+/// or of another thread, cannot be caught.
 [[noreturn]] void EndTerminated() {
   const std::string name = gflags::ProgramInvocationShortName();
   try {

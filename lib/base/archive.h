@@ -229,7 +229,7 @@ void Serialize(Archive* archive, std::map<Key, T>* values) {
   internal::SerializeTree<std::pair<Key, T>>(archive, values);
 }
 
-/// Writes a value that whoever reads has already, or checks it.
+/// Writes a value that the reader has already, or checks it.
 ///
 /// @throw InputError if it is another one: "<name> = <value>: expected <own>".
 template <typename Archive, typename T>

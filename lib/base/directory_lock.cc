@@ -133,7 +133,7 @@ bool IsStale(const std::string& path, const std::string& text,
   const LockHolder self = ThisProcess();
   if (holder->host != self.host) return Age(path) > options.silence;
   if (holder->boot != self.boot) return true;
-  // Whoever is ending writes nothing more soon; it is waited for.
+  // A process that is ending stops writing soon; it is waited for.
   constexpr int kLooks = 500;
   constexpr std::chrono::milliseconds kBetween(10);
   ProcessState state = StateOf(holder->pid);
@@ -158,8 +158,8 @@ bool CreateExclusively(const std::string& path, const std::string& text) {
   throw InputError(path + ": cannot be written (" + reason + ")");
 }
 
-/// Removes a stale lock unless it has changed meanwhile. Who does so holds a
-/// second lock, so that nobody removes the lock of who came first.
+/// Removes a stale lock unless it has changed meanwhile. A second lock is held
+/// for that, so that the lock of a process that came first is not removed.
 void RemoveStale(const std::string& path, const std::string& text,
                  const LockOptions& options) {
   const std::string guard = path + ".takeover";

@@ -32,7 +32,7 @@ struct LockOptions {
   std::chrono::milliseconds silence{120000};
 };
 
-/// A file that says that somebody works in its folder. It names host, process
+/// A file that says that a process works in its folder. It names host, process
 /// and its start, and is touched every few seconds while it is held. A lock
 /// whose process is gone or a zombie, or on another host is silent for long, is
 /// taken over.
@@ -54,7 +54,7 @@ class DirectoryLock {
   DirectoryLock& operator=(DirectoryLock&&) noexcept;
 
   /// Whether the file is there and ours: not after the folder was removed, or
-  /// somebody took the lock over while this process was stopped for long.
+  /// another took the lock over while this process was stopped for long.
   bool IsHeld() const;
 
  private:
@@ -67,7 +67,7 @@ class DirectoryLock {
   std::unique_ptr<Heartbeat> heartbeat_;
 };
 
-/// Who holds the lock at `path` and lives; empty if nobody does.
+/// The living holder of the lock at `path`; empty if there is none.
 std::optional<LockHolder> LivingHolder(const std::string& path,
                                        const LockOptions& options = {});
 

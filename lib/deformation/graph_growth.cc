@@ -168,10 +168,10 @@ void AddNodes(const TriangleMesh& mesh, const GraphOptions& options,
 void GraphOptions::List(OptionList* list) {
   list->Number("neighbors_per_point", &neighbors_per_point,
                {1, kMaxSkinningNodes}, "nodes",
-               "K, the nodes that carry a point (Eq. 3).")
+               "K, the number of nodes that move a point (Eq. 3).")
       .common = true;
   list->Number("neighbors_per_node", &neighbors_per_node, {1, 64}, "nodes",
-               "Edges of a node.");
+               "Edges from each node.");
   list->Number("near_spacing", &near_spacing, Range::AtLeast(0.002), "metres",
                "Node spacing of surfaces up to near_depth.")
       .common = true;
@@ -181,16 +181,17 @@ void GraphOptions::List(OptionList* list) {
   list->Demand(far_spacing >= near_spacing, "far_spacing",
                "metres >= near_spacing");
   list->Number("near_depth", &near_depth, Range::Above(0), "metres",
-               "See near_spacing.");
+               "Depth up to which near_spacing applies.");
   list->Number("far_depth", &far_depth, Range::Above(0), "metres",
-               "See far_spacing.");
+               "Depth from which far_spacing applies.");
   list->Demand(far_depth > near_depth, "far_depth", "metres > near_depth");
   list->Number("max_nodes", &max_nodes, Range::AtLeast(1), "nodes",
-               "Of a graph; its spacing grows to keep it.")
+               "Nodes of a graph at most; its spacing grows to keep to that.")
       .common = true;
-  list->Number("growth_batch", &growth_batch, Range::Share(), "",
-               "New nodes wait until they are so many, as a part of the "
-               "graph's (fewer, larger growths are faster).");
+  list->Number(
+      "growth_batch", &growth_batch, Range::Share(), "",
+      "New nodes wait until they are this share of the graph's (fewer, "
+      "larger growths are faster).");
 }
 
 void GraphOptions::Check() const { CheckOptions(*this); }

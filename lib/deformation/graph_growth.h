@@ -48,7 +48,7 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               DeformationGraph* graph, MotionHistory* history);
 
 /// The same, given the skinning by the graph as it is and what that of every
-/// vertex hangs on.
+/// vertex depends on.
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               const SkinningIndex& index,
               const std::vector<SkinningSupport>& supports,

@@ -22,7 +22,7 @@ struct Skinning {
   int count = 0;                                        ///< Nodes used.
 };
 
-/// What the skinning of a point hangs on.
+/// What the skinning of a point depends on.
 struct SkinningSupport {
   int nearest = -1;    ///< The nearest node; -1 = not known.
   float distance = 0;  ///< Of the point from it, metres.

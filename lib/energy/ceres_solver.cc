@@ -158,11 +158,11 @@ void SolverOptions::List(OptionList* list) {
   list->Choice("linear_solver", &linear_solver,
                {"auto", "dense_qr", "dense_normal_cholesky",
                 "sparse_normal_cholesky", "cgnr"},
-               "Of ceres.")
+               "Linear solver of ceres.")
       .common = true;
   list->Choice("preconditioner", &preconditioner,
                {"auto", "two_level", "jacobi", "block_ic0", "identity"},
-               "Of gn_pcg (auto: two_level); of cgnr jacobi (auto) or "
+               "For gn_pcg (auto: two_level); for cgnr jacobi (auto) or "
                "identity.")
       .common = true;
   list->Demand(
@@ -170,14 +170,15 @@ void SolverOptions::List(OptionList* list) {
           (preconditioner != "two_level" && preconditioner != "block_ic0"),
       "preconditioner", "auto, identity or jacobi with solver " + solver);
   list->Choice("trust_region", &trust_region, {"levenberg_marquardt", "dogleg"},
-               "How a step is kept short.")
+               "How the length of a step is limited.")
       .common = true;
   list->Demand(trust_region != "dogleg" || linear_solver != "cgnr",
                "trust_region",
                "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
                "factorisation)");
   list->Number("solver_threads", &threads, {1, 1024}, "threads",
-               "Of ceres; with more the last digits change from run to run.");
+               "For ceres; with more than one the last digits vary from run to "
+               "run.");
   list->Number("solver_iterations", &max_iterations, Range::AtLeast(1), "",
                "Iterations of the solver for each association.")
       .common = true;
@@ -188,11 +189,11 @@ void SolverOptions::List(OptionList* list) {
   list->Number("eta", &eta, {0, 1, true, true}, "",
                "Relative accuracy of a step's linear solve (gn_pcg, cgnr).");
   list->Number("function_tolerance", &function_tolerance, Range::AtLeast(0), "",
-               "Converged when the cost changes by less, relative.");
+               "Converged when the relative change of the cost is smaller.");
   list->Number("gradient_tolerance", &gradient_tolerance, Range::AtLeast(0), "",
-               "Converged when the gradient's largest entry is below.");
+               "Converged when the gradient's largest entry is smaller.");
   list->Number("parameter_tolerance", &parameter_tolerance, Range::AtLeast(0),
-               "", "Converged when the step is below (radians, metres).");
+               "", "Converged when the step is smaller (radians, metres).");
   list->Number("initial_radius", &initial_radius, Range::Above(0), "",
                "First radius of the trust region; 1 / damping.");
   constexpr double kLeastRadius = 1e-32, kLargestRadius = 1e16;  // Of Ceres.

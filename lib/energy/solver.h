@@ -30,7 +30,7 @@ struct SolverOptions {
   std::string preconditioner = "auto";
   /// levenberg_marquardt or dogleg.
   std::string trust_region = "levenberg_marquardt";
-  int threads = 1;         ///< Of Ceres; more change the last digits.
+  int threads = 1;         ///< Of Ceres; with more the last digits vary.
   int max_iterations = 1;  ///< Per association: a new one tells more.
   int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.
   double eta = 0.01;  ///< For cgnr and gn_pcg: relative accuracy of a step.
@@ -43,9 +43,9 @@ struct SolverOptions {
   /// Converged when the step is below (radians, metres).
   double parameter_tolerance = 1e-8;
   /// Of the trust region: Levenberg-Marquardt raises the diagonal of J^T J by
-  /// itself / radius. With Ceres' own 1e4, hidden parts that hang on little
-  /// swing by up to a right angle in a frame; with 1e2, limbs in view are
-  /// followed too slowly.
+  /// itself / radius. With Ceres' own 1e4, hidden parts with few edges to
+  /// the rest swing by up to a right angle in a frame; with 1e2, limbs in view
+  /// are followed too slowly.
   double initial_radius = 1e3;
   bool full_report = false;  ///< Keep Ceres' FullReport() text.
 

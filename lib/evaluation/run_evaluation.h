@@ -40,11 +40,12 @@ struct EvaluationOptions {
 struct RunEvaluation {
   std::string run;           ///< The run directory.
   std::string ground_truth;  ///< Folder of groundtruth.txt; empty if none.
-  /// Set by whoever cleared DeformationGraph::first_seen: the model of every
-  /// frame was the whole final one.
+  /// Set by the caller that cleared DeformationGraph::first_seen: the model of
+  /// every frame was the whole final one.
   bool whole_model = false;
-  /// Set by whoever cleared DeformationGraph::sightings (or first_seen): the
-  /// model of every frame held what KnownNodes() would leave out.
+  /// Set by the caller that cleared DeformationGraph::sightings (or
+  /// first_seen): the model of every frame held what KnownNodes() would leave
+  /// out.
   bool with_unknown = false;
   std::optional<TrajectoryError> trajectory;  ///< ATE, RPE, alignment.
   /// The background's mesh, put into the true world by

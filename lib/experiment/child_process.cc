@@ -28,7 +28,7 @@ constexpr std::chrono::milliseconds kPollInterval(20);
 constexpr std::size_t kLastLines = 5;
 /// Of a program that could not be started.
 constexpr int kNotStarted = 127;
-/// Of a process whose status somebody else took (SIGCHLD is ignored).
+/// Of a process whose status was lost (SIGCHLD is ignored).
 constexpr int kUnknownExit = 255;
 
 void CheckWritable(const std::string& path) {
@@ -72,7 +72,7 @@ void RestoreSignals() {
   Redirect(start.errors, O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
   execv(start.arguments[0], start.arguments.data());
   const char* const reason = std::strerror(errno);
-  // Nobody is left to hear of a failure to write.
+  // A failure to write cannot be reported any more.
   if (write(STDERR_FILENO, reason, std::strlen(reason)) < 0) _exit(kNotStarted);
   _exit(kNotStarted);
 }

@@ -61,7 +61,7 @@ std::vector<Task> RecordedTasks(const ExperimentFolder& folder,
   return tasks;
 }
 
-/// Files of somebody else would be replaced by the tables.
+/// The tables must not replace files of another program.
 void CheckNoOthers(const ExperimentFolder& folder) {
   if (IsExperiment(folder)) return;
   for (const char* name :

@@ -41,8 +41,8 @@ class ExperimentFolder {
 void AddExperiment(const ExperimentFolder& folder,
                    const Experiment& experiment);
 
-/// Whether an experiment was run into the folder, and not somebody else's files
-/// lie there under the same names.
+/// Whether an experiment was run into the folder; false if files of another
+/// program lie there under the same names.
 bool IsExperiment(const ExperimentFolder& folder);
 
 /// Tasks of all experiments that were run into the folder, in the order of

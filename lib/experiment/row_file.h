@@ -21,7 +21,7 @@ class RowFile {
  public:
   /// One run.
   struct Row {
-    std::string task;      ///< Name of the task, for whoever reads the file.
+    std::string task;      ///< Name of the task, for readers of the file.
     std::string sequence;  ///< Name of the sequence.
     std::string row;       ///< Name of the row.
     std::string settings;  ///< As SettingsText().

@@ -184,7 +184,7 @@ bool TaskRunner::Reconstruct(TaskResult* result) const {
     record.cost = CostOf(child, *after.marker);
     record.reason = ReasonOf(before, after, damage);
   } else if (record.run_id != after.Id()) {
-    record.cost = RunCost();  // It ended when nobody looked any more.
+    record.cost = RunCost();  // It ended unwatched.
   }
   record.run_id = after.Id();
   record.identity = after.marker->identity.Hash();

@@ -22,7 +22,7 @@ struct TaskRunnerOptions {
 
 /// What became of a task.
 struct TaskResult {
-  bool passed_over = false;    ///< Somebody else works on it.
+  bool passed_over = false;    ///< Another process works on it.
   bool kept = false;           ///< The run had been finished before.
   std::string evaluated_anew;  ///< Why a kept run was; empty if it was not.
   bool stopped = false;        ///< Was asked to stop, and did.
@@ -39,7 +39,7 @@ class TaskRunner {
   /// Does what is left to do of a task: sf_run, which keeps a finished run of
   /// the same identity, and sf_evaluate where there is a ground truth and its
   /// result is missing or older. All that goes wrong is recorded. A task that
-  /// somebody else works on is passed over; one that somebody has ended since
+  /// another process works on is passed over; one that another has ended since
   /// `known_attempts` is not tried again.
   ///
   /// @throw InputError if the task's folder cannot be written.

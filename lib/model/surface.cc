@@ -71,18 +71,19 @@ std::vector<Eigen::Vector3d> PlacesOfSurface(const CanonicalPlaces& found) {
 
 void SurfaceOptions::List(OptionList* list) {
   list->Part("", &tsdf);
-  list->Number("looks", &looks, Range::AtLeast(1), "frames",
-               "A new part of a deforming surface is meshed once seen in so "
-               "many; in more where it was found empty before.");
+  list->Number(
+      "looks", &looks, Range::AtLeast(1), "frames",
+      "A new part of a deforming surface is meshed once it was seen in "
+      "so many; in more where space was found empty before.");
   list->Number("min_piece", &min_piece_area, Range::AtLeast(0), "square metres",
-               "Smaller pieces of the final mesh are left out.");
+               "Smaller connected pieces of the final mesh are left out.");
   list->Number("mesh_weight", &min_mesh_weight,
                {0, MeshExtractor::kMaxMinWeight, true}, "",
-               "Observations that a voxel needs to be meshed (about frames at "
-               "close range).");
+               "Weight that a voxel needs to be meshed (a frame at close range "
+               "gives about 1).");
   list->Number("growth_reach", &growth_reach, Range::Above(0), "metres",
-               "A deforming surface grows over live points that are no farther "
-               "from a node.");
+               "A deforming surface grows over live points up to this distance "
+               "from its nodes.");
 }
 
 void SurfaceOptions::Check() const { CheckOptions(*this); }
@@ -231,7 +232,7 @@ int Surface::FirstSeen(int node, const RecentViews& views) const {
         views.Look(motions->frame, id_,
                    graph_.positions[node] + motions->motions[node].translation);
     if (!sighting) break;
-    if (!motions->tracked) continue;  // Nobody knows where it was.
+    if (!motions->tracked) continue;  // Its place is not known.
     if (*sighting == Sighting::kFreeSpace) break;
     if (*sighting == Sighting::kSeen) first = motions->frame;
   }

@@ -315,12 +315,12 @@ class RowCaster {
 
 void RayCastOptions::List(OptionList* list) {
   list->Number("min_depth", &min_depth, Range::Above(0), "metres",
-               "The background is rendered from here on.");
+               "Nearest depth at which the background is rendered.");
   list->Number("max_depth", &max_depth, Range::Above(0), "metres",
-               "The background is rendered up to here.");
+               "Farthest depth at which the background is rendered.");
   list->Demand(max_depth > min_depth, "max_depth", "metres > ray_min_depth");
   list->Number("min_weight", &min_weight, Range::AtLeast(0), "",
-               "Voxels of the background observed less are not surface.");
+               "Voxels of the background with less weight are not surface.");
 }
 
 ModelMap RayCast(const TsdfVolume& volume, const Rigid3d& camera_from_canonical,

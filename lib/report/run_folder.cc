@@ -45,7 +45,7 @@ bool HoldsNamesOfRuns(const std::string& folder) {
   return false;
 }
 
-/// What a run wrote, without what somebody else put there.
+/// What a run wrote, without files of other programs.
 std::map<std::string, RunFile> FilesOfRun(const std::string& folder) {
   std::map<std::string, RunFile> own;
   for (const auto& [path, file] : ListRunFiles(folder, {kCheckpoint})) {
@@ -72,7 +72,7 @@ void Rename(const fs::path& from, const fs::path& to) {
 }
 
 /// Moves those of the files that are still in `from`. What lies at their place
-/// and is nobody's of ours is kept under another name.
+/// and was not written by a run is kept under another name.
 void MoveFiles(const OwnedFileList& files, const fs::path& from,
                const fs::path& to, const std::string& id) {
   for (const OwnedFile& file : files) {
@@ -113,8 +113,8 @@ void RemoveEmptyFolders(const std::string& folder) {
 }
 
 /// Removes what an unfinished run wrote and, if nothing is left, its folder;
-/// its marker last: whoever is killed meanwhile leaves a folder that is still
-/// known for one.
+/// its marker last, so that a process that is killed meanwhile leaves a folder
+/// that is still known for one.
 void RemoveRun(const RunPaths& paths) {
   const fs::path marker(paths.Marker());
   RemoveTemporaries(paths.root());
@@ -128,7 +128,7 @@ void RemoveRun(const RunPaths& paths) {
     if (path.filename() != marker.filename()) fs::remove_all(path);
   }
   fs::remove(marker);
-  std::error_code ignored;  // What is somebody else's stays.
+  std::error_code ignored;  // Files of others stay.
   fs::remove(paths.root(), ignored);
 }
 
@@ -295,7 +295,7 @@ void RunFolder::RecordFailure(const std::string& error) noexcept {
     WriteRunMarker(unfinished_.root(), *begun);
   } catch (const std::exception&) {
     // A full disk takes no marker either: the run stays "running" there, and
-    // whoever comes next sees that nobody holds it.
+    // the next process sees that no other holds it.
   }
 }
 

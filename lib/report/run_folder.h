@@ -27,15 +27,15 @@ enum class RunStart {
 /// A run directory while a run goes on in it. The run writes into
 /// RUN/unfinished, a run directory of its own, and is put into place when it
 /// has ended: files of an older result are deleted by the list in its marker,
-/// then the new ones are renamed. Whatever else lies in RUN or RUN/unfinished stays. A program
-/// that is killed at any moment leaves a state from which the next one goes on,
-/// and an older result until the new one is whole.
+/// then the new ones are renamed. Whatever else lies in RUN or RUN/unfinished
+/// stays. A program that is killed at any moment leaves a state from which the
+/// next one goes on, and an older result until the new one is whole.
 class RunFolder {
  public:
   /// Makes `root`, locks it, mends what a killed program left, and decides how
   /// to begin.
   ///
-  /// @throw InputError if somebody else works on the folder, if it holds what
+  /// @throw InputError if another process works on the folder, if it holds what
   ///     no run wrote, or a run of another identity and not `overwrite`.
   RunFolder(std::string root, RunIdentity identity,
             const RunFolderOptions& options);
@@ -57,7 +57,8 @@ class RunFolder {
   /// States that the run goes on from `frame`.
   void RecordResumption(int frame);
 
-  /// @throw InputError if the folder was removed or somebody took it over.
+  /// @throw InputError if the folder was removed or another process took it
+  /// over.
   void CheckHeld() const;
 
   /// Ends the run. A complete one takes the place of an older result; others

@@ -176,7 +176,7 @@ void MaskFolderWriter::AppendLines(const std::string& file,
 }
 
 /// Listed before it gets its name: an image that is there without being listed
-/// is of somebody else.
+/// was written by another program.
 void MaskFolderWriter::AddImage(const std::string& name,
                                 const cv::Mat& image) const {
   const std::string path = (fs::path(folder_) / name).string();

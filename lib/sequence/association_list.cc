@@ -49,7 +49,7 @@ bool IsDepthImage(const fs::path& path) {
   try {
     return ReadDepthImage(path.string()).type() == CV_16UC1;
   } catch (const InputError&) {
-    return false;  // If it is broken, whoever reads it says so.
+    return false;  // A broken file is reported when it is read.
   }
 }
 

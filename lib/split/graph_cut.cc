@@ -198,23 +198,24 @@ class GridGraph {
 
 void GraphCutOptions::List(OptionList* list) {
   list->Number("core_erosion", &core_erosion, {1, 100}, "pixels",
-               "A mask eroded by so much is surely foreground.");
+               "A mask eroded by so much is certain foreground.");
   list->Number("outer_dilation", &outer_dilation, {1, 200}, "pixels",
-               "What is farther from a mask is surely background.");
+               "What is farther from a mask is certain background.");
   list->Number(
       "step_factor", &step_factor, Range::Above(0), "",
-      "A depth step of so many times the noise lowers an edge to 1/e.");
+      "A depth step of so many times the noise lowers the weight of an "
+      "edge to 1/e.");
   list->Number("step_offset", &step_offset, Range::AtLeast(0), "metres",
-               "Is added to that step.");
+               "Added to that step.");
   list->Number("concave_scale", &concave_scale, Range::Above(0), "",
-               "1 - cos of the angle of the normals that lowers an edge to 1/e "
-               "where the surface is concave.");
+               "1 - cos of the angle between normals that lowers the weight of "
+               "an edge to 1/e where the surface is concave.");
   list->Number("convex_scale", &convex_scale, Range::Above(0), "",
                "The same where it is convex.");
   list->Number("color_scale", &color_scale, Range::Above(0), "grey values",
-               "Difference of colour with half of the effect.");
+               "Difference of colour with half of the full effect.");
   list->Number("color_share", &color_share, Range::Share(), "",
-               "What colour can take from an edge at most.");
+               "Largest share of an edge's weight that colour can remove.");
 }
 
 cv::Mat_<uchar> CutForeground(const PointMap& points, const cv::Mat& color,

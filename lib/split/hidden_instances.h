@@ -10,10 +10,10 @@
 
 namespace splitfusion {
 
-/// Finds followed surfaces of which the prediction shows hardly anything in
-/// the detections that overlap no surface: somebody comes out from behind
-/// somebody else, where he was not quite predicted. He is known by place, kind
-/// and colour. Adds to `matches`, one a candidate.
+/// Looks for followed surfaces of which the prediction shows hardly anything
+/// among the detections that overlap no surface. A person who comes out from
+/// behind another one, not quite where predicted, is recognised by place, kind
+/// and colour. Adds to `matches`, at most one for each candidate.
 void RecognizeHidden(const std::vector<Candidate>& candidates,
                      const LabelTable& table, const InstanceRegistry& registry,
                      const SplitWork& work, std::vector<Match>* matches);

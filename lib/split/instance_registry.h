@@ -32,7 +32,7 @@ struct TrackedInstance {
   }
 };
 
-/// Looks of an instance, by which it is known when it comes back.
+/// Appearance of an instance, by which it is recognised when it comes back.
 struct Appearance {
   cv::Mat histogram;  ///< 8x8x8 BGR, sum 1; empty if never seen.
   cv::Vec3f center;   ///< Mean point, camera frame, metres.
@@ -53,7 +53,7 @@ Appearance ComputeAppearance(const cv::Mat& color, const PointMap& points,
 double AppearanceSimilarity(const Appearance& a, const Appearance& b,
                             double max_distance);
 
-/// Who is who: every instance ever born, and what is known of it.
+/// The identity of every instance ever born, and what is known of it.
 class InstanceRegistry {
  public:
   /// Adds an instance and returns its id.
@@ -63,7 +63,7 @@ class InstanceRegistry {
   void RecordDetection(int id, int frame, const std::string& class_name,
                        double score);
 
-  /// Replaces the looks, once the pixels of a detected instance are known.
+  /// Replaces the appearance, once the pixels of a detected instance are known.
   void RecordAppearance(int id, const Appearance& appearance);
 
   /// Stops following an instance until it is detected again.

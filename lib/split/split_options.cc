@@ -6,32 +6,35 @@ namespace splitfusion {
 
 void SplitOptions::List(OptionList* list) {
   list->Number("min_score", &min_score, Range::Share(), "",
-               "A detection below makes no surface.")
+               "Detections with a lower score make no surface.")
       .common = true;
   list->Choice("rigid_objects", &rigid_objects, {"background", "separate"},
                "Rigid classes: background (until they move) or separate "
                "(surfaces of their own).")
       .common = true;
   list->Text("merge_touching", &merge_touching,
-             "CLASS+CLASS,...: what touches an instance of an entry's first "
-             "class is a part of it, as in person+teddy bear.")
+             "CLASS+CLASS,...: instances of later classes that touch one of "
+             "the first belong to it, as in person+teddy bear.")
       .common = true;
   list->Number("max_detection_area", &max_area, {0, 1, true}, "of the image",
                "A larger detection makes no surface.");
   list->Number("min_instance_pixels", &min_pixels, Range::AtLeast(1), "pixels",
-               "Smaller instances, with depth, are ignored.");
-  list->Number("min_match_iou", &min_match_iou, {0, 1, true}, "",
-               "Overlap of a detection with a projected surface.");
+               "Instances with fewer pixels with depth are ignored.");
+  list->Number(
+      "min_match_iou", &min_match_iou, {0, 1, true}, "",
+      "Least overlap of a detection with the projected surface that it "
+      "belongs to.");
   list->Number("max_missed_frames", &max_missed_frames, Range::AtLeast(0),
-               "frames", "A surface is kept alive without a detection.");
+               "frames", "A surface is followed so long without a detection.");
   list->Number("birth_frames", &birth_frames, Range::AtLeast(1), "frames",
-               "Detections among four times as many frames make a surface; "
-               "twice as many where background was mapped.");
+               "Frames with a detection, of four times as many, that make a "
+               "surface; twice as many where background was mapped.");
   list->Number("confident_score", &confident_score, Range::Share(), "",
-               "A detection of the first frame makes a surface at once.");
+               "From this score on a detection of the first frame makes a "
+               "surface at once.");
   list->Number("min_contact", &min_contact, {0, 1, true}, "",
-               "A newcomer is a part of a surface that it touches along this "
-               "share of its border.");
+               "A new detection is a part of a surface that it touches along "
+               "this share of its border.");
   list->Part("cut_", &graph_cut);
   list->Part("evidence_", &prior);
   list->Part("uncertain_", &uncertain);

@@ -139,21 +139,22 @@ class Evidence {
 void PriorOptions::List(OptionList* list) {
   Range weight{0, 4};
   list->Number("prediction_weight", &prediction_weight, weight, "",
-               "Of live depth that agrees with a projected surface.");
+               "Weight of live depth that agrees with a projected surface.");
   list->Number("background_weight", &background_weight, weight, "",
-               "Of live depth that agrees with the background.");
+               "Weight of live depth that agrees with the background.");
   list->Number("unexplained_weight", &unexplained_weight, weight, "",
-               "Of live depth in front of the background.");
+               "Weight of live depth in front of the background.");
   list->Number("missed_weight", &missed_weight, weight, "",
-               "Against pixels outside of a surface that was not detected.");
+               "Weight against pixels outside of a surface that was not "
+               "detected.");
   weight.above_low = true;
   list->Number("mask_weight", &mask_weight, weight, "",
-               "Of the core of a mask, in edges of the cut.");
+               "Weight of the core of a mask, in edges of the cut.");
   list->Number("surface_gate", &surface_gate, Range::Above(0), "metres",
                "Depth agrees with a surface within this and three times the "
                "noise.");
   list->Number("background_gate", &background_gate, Range::Above(0), "metres",
-               "The same of the background.");
+               "The same for the background.");
 }
 
 ComparedDepth CompareDepth(const cv::Mat& depth,

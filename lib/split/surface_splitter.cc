@@ -221,7 +221,7 @@ void SurfaceSplitter::SettleMissed(const Segment& segment, int pixels,
 }
 
 void SurfaceSplitter::SettleNewcomers(SplitWork* work) {
-  // What may be held last: who holds it may be new too.
+  // Parts that may be held come last: their holder may be new, too.
   for (const bool held : {false, true}) {
     for (std::size_t i = 0; i < work->segments.size(); ++i) {
       const Segment& segment = work->segments[i];

@@ -46,12 +46,13 @@ bool IsUncertain(const UncertainInput& input, const UncertainOptions& options,
 }  // namespace
 
 void UncertainOptions::List(OptionList* list) {
-  list->Number("band", &band, {0, 100}, "pixels",
-               "Background so near to an instance is left alone.");
+  list->Number(
+      "band", &band, {0, 100}, "pixels",
+      "Background so near to an instance is neither tracked nor fused.");
   list->Number("edge_band", &edge_band, {0, 100}, "pixels",
                "The same beside depth edges.");
   list->Number("reach", &reach, {0, 1000}, "pixels",
-               "The same of what stands in front of the background.");
+               "The same for what stands in front of the background.");
 }
 
 cv::Mat_<uchar> DrawUncertainRegion(const UncertainInput& input,

@@ -13,7 +13,7 @@ namespace splitfusion {
 enum SyntheticInstanceId : std::uint8_t {
   kPersonId = 1,      ///< The walking person.
   kSoftObjectId = 2,  ///< The soft toy.
-  kChairId = 3,       ///< A chair that nobody moves.
+  kChairId = 3,       ///< A chair that never moves.
 };
 
 /// The static part of the scene. World frame: z up, origin on the floor, the

@@ -125,20 +125,20 @@ void FreeUnobserved(const internal::LeafBuffers& leaf, float free_space) {
 void TsdfOptions::List(OptionList* list) {
   // Finer voxels would need more memory than there is, and end in OpenVDB.
   list->Number("voxel", &voxel_size, {0.001, 1, false, true}, "metres",
-               "Edge of a voxel.")
+               "Edge length of a voxel.")
       .common = true;
   list->Number("truncation", &truncation, Range::Above(0), "metres",
-               "Truncation of the distances.")
+               "Truncation distance.")
       .common = true;
   list->Demand(truncation >= 2 * voxel_size && truncation <= 50 * voxel_size,
                "truncation",
                "2 to 50 voxels (" + NumberText(2 * voxel_size) + " to " +
                    NumberText(50 * voxel_size) + " metres)");
   list->Number("max_weight", &max_weight, Range::AtLeast(1), "",
-               "Cap of a voxel's weight in the running mean.");
+               "Largest weight of a voxel in the running mean.");
   list->Number("free_weight", &max_free_weight, Range::Above(0), "",
-               "The same where space was found empty: how long what comes back "
-               "takes to be believed.");
+               "Largest weight of a voxel found empty; the smaller, the sooner "
+               "what comes back there is modelled.");
 }
 
 void TsdfOptions::Check() const { CheckOptions(*this); }

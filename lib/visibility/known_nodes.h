@@ -29,8 +29,8 @@ std::vector<char> SeenNodes(const DeformationGraph& graph, int frame);
 /// as the length node_spacing * sqrt(n). The back of a body is held from all
 /// around, and walks from there are short. What hangs on a narrow neck, or on
 /// nothing but the edges that tie loose parts, has long ones, as most walks
-/// come back before they pass the neck: nobody knows where a piece of a leg is
-/// that has been behind the other one for a while.
+/// come back before they pass the neck: the place of a piece of a leg that has
+/// been behind the other one for a while is not known.
 ///
 /// Walks follow the edges of the graph as it is now, between nodes that had
 /// been seen by the frame. All nodes are known where first_seen is not recorded

@@ -30,7 +30,7 @@ struct PointToPoint {
   }
 };
 
-/// A user's term over all correspondences; the README shows it too.
+/// A user's term over all correspondences; CONTRIBUTING.md shows it too.
 class PointToPointTerm : public splitfusion::EnergyTerm {
  public:
   void AddResiduals(const splitfusion::EnergyInput& input,

@@ -282,7 +282,11 @@ TEST_F(SfRun, PresetsAreDefaultsThatFlagsOverrule) {
 TEST_F(SfRun, HelpNamesOwnFlagsAndFitsAScreen) {
   const ProgramResult result = RunProgram("sf_run", "--help");
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_LT(std::count(result.output.begin(), result.output.end(), '\n'), 60);
+  EXPECT_LE(std::count(result.output.begin(), result.output.end(), '\n'), 50);
+  std::istringstream lines(result.output);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 80u) << line;
+  }
   EXPECT_THAT(result.output,
               AllOf(HasSubstr("--sequence"), HasSubstr("--linear_solver"),
                     HasSubstr("--trust_region")));

@@ -151,7 +151,7 @@ SPLITFUSION_INLINE void FuseRow(const FusionView& view,
   const Real confidence =
       Pack::Select(free_space, Real{} + kFreeSpaceWeight, seen_weight);
   const Real sum = old_weight + confidence;
-  // Nothing and nothing is nothing.
+  // No division by zero where neither voxel nor pixel has a weight.
   const Real blend = confidence / Pack::Max(sum, Real{} + 1e-30f);
   Real distance =
       old_distance + blend * (Pack::Min(truncation, sdf) - old_distance);
