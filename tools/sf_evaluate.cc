@@ -49,11 +49,8 @@ DEFINE_bool(whole_model, false,
             "Judge the whole final model in every frame, also what was seen "
             "only later.");
 DEFINE_bool(with_unknown, true,
-            "Judge all that had been seen by each frame, also parts whose "
-            "place is not known any more.");
-DEFINE_bool(known_only, false,
-            "Judge only parts that were seen lately or are closely tied to "
-            "such parts.");
+            "Judge all that had been seen by each frame; there is no other "
+            "measure any more.");
 DEFINE_string(track_query, "",
               "CSV id,frame,x,y,z (camera frame, metres): points of one frame "
               "to follow through --run.");
@@ -92,11 +89,6 @@ std::vector<int> TrackFrames() {
     frames.push_back(std::stoi(word));
   }
   return frames;
-}
-
-/// Whether the model holds what KnownNodes() would leave out.
-bool WithUnknown() {
-  return FLAGS_whole_model || (FLAGS_with_unknown && !FLAGS_known_only);
 }
 
 EvaluationOptions OptionsFromFlags() {
@@ -176,7 +168,6 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
   }
   for (RecordedSurface& surface : run.surfaces) {
     if (FLAGS_whole_model) surface.graph.first_seen.clear();
-    if (WithUnknown()) surface.graph.sightings.clear();
   }
   const auto surfaces = AnimateSurfaces(std::move(run.surfaces));
   std::optional<GroundTruth> truth;
@@ -187,7 +178,6 @@ void EvaluateRunDirectory(const EvaluationOptions& options) {
   }
   RunEvaluation evaluation = EvaluateRun(run, surfaces, truth, options);
   evaluation.whole_model = FLAGS_whole_model;
-  evaluation.with_unknown = WithUnknown();
   Publish(FormatTable(evaluation), ToJson(evaluation),
           RunPaths(FLAGS_run).Evaluation());
   if (FLAGS_output.empty()) AddRunFile(FLAGS_run, "evaluation.json");
@@ -205,7 +195,7 @@ void CheckUsage() {
   require(given(FLAGS_track_query) == given(FLAGS_track_output),
           "--track_query and --track_output go together");
   require(!FLAGS_whole_model || given(FLAGS_run), "--whole_model needs --run");
-  require(!FLAGS_known_only || given(FLAGS_run), "--known_only needs --run");
+  require(FLAGS_with_unknown, "--with_unknown cannot be switched off");
   require(!given(FLAGS_track_query) || given(FLAGS_run),
           "--track_query needs --run");
   require(!given(FLAGS_trajectory) || given(FLAGS_ground_truth),

@@ -21,18 +21,6 @@ struct NodeMotion {
   }
 };
 
-/// Frames from the first to the last one, both included.
-struct FrameRun {
-  int first = 0;  ///< Index of the first frame.
-  int last = 0;   ///< Index of the last frame.
-
-  /// Saves or restores it, see lib/base/archive.h.
-  template <typename Archive>
-  void Serialize(Archive* archive) {
-    (*archive)(first, last);
-  }
-};
-
 /// The embedded deformation graph of one surface (SplitFusion IV-B).
 ///
 /// A rigid surface is the graph with one node at the canonical origin: its
@@ -48,11 +36,6 @@ struct DeformationGraph {
   /// known of all of them, it is of none, and all counts as seen from the
   /// start.
   std::vector<int> first_seen;
-  /// Runs of frames, ascending, in which correspondences told where each node
-  /// is: weights of Eq. 3 that add up to one point. The first one begins at
-  /// first_seen, as if what became the node had been followed since. Empty
-  /// where it is not known of all nodes.
-  std::vector<std::vector<FrameRun>> sightings;
   /// How far the last association told where each node is, 0 to 1, see
   /// SeenShares(); nodes beyond its end are newer.
   std::vector<double> seen;
@@ -70,8 +53,8 @@ struct DeformationGraph {
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(positions, motions, neighbors, node_spacing, first_seen,
-               sightings, seen, seen_edges);
+    (*archive)(positions, motions, neighbors, node_spacing, first_seen, seen,
+               seen_edges);
   }
 };
 

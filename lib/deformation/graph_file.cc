@@ -46,17 +46,13 @@ void CheckEdges(const std::string& path, const DeformationGraph& graph) {
   }
 }
 
-void CheckArray(const std::string& path, const std::string& field,
-                const Json& json) {
-  if (json.is_array()) return;
-  throw InputError(path + ": field '" + field + "': " + BriefJson(json) +
-                   ": expected an array");
-}
-
 /// A field that has an entry for every node or none at all.
 void CheckEntries(const std::string& path, const std::string& field,
                   const Json& json, std::size_t nodes) {
-  CheckArray(path, field, json);
+  if (!json.is_array()) {
+    throw InputError(path + ": field '" + field + "': " + BriefJson(json) +
+                     ": expected an array");
+  }
   if (json.size() == nodes || json.empty()) return;
   throw InputError(
       path + ": '" + field + "' has " + std::to_string(json.size()) +
@@ -82,37 +78,6 @@ std::vector<int> FirstSeen(const std::string& path, const Json& json,
                            std::size_t nodes) {
   CheckEntries(path, "first_seen", json, nodes);
   return Frames(path, "first_seen", json);
-}
-
-/// Runs of frames of one node: [first, last, first, last, ...].
-std::vector<FrameRun> Runs(const std::string& path, const Json& json) {
-  CheckArray(path, "sightings", json);
-  const std::vector<int> ends = Frames(path, "sightings", json);
-  bool ascending = !ends.empty() && ends.size() % 2 == 0;
-  for (std::size_t i = 1; i < ends.size(); ++i) {
-    // A run may be one frame, but the next one begins later.
-    const bool next_run = i % 2 == 0;
-    ascending = ascending &&
-                (next_run ? ends[i - 1] < ends[i] : ends[i - 1] <= ends[i]);
-  }
-  if (!ascending) {
-    throw InputError(path + ": field 'sightings': " + BriefJson(json) +
-                     ": expected first and last frames of runs, ascending");
-  }
-  std::vector<FrameRun> runs;
-  for (std::size_t i = 0; i < ends.size(); i += 2) {
-    runs.push_back({ends[i], ends[i + 1]});
-  }
-  return runs;
-}
-
-std::vector<std::vector<FrameRun>> Sightings(const std::string& path,
-                                             const Json& json,
-                                             std::size_t nodes) {
-  CheckEntries(path, "sightings", json, nodes);
-  std::vector<std::vector<FrameRun>> sightings;
-  for (const Json& item : json) sightings.push_back(Runs(path, item));
-  return sightings;
 }
 
 /// A field, not a copy of it: copies are made as deep as the value is, which
@@ -143,8 +108,6 @@ DeformationGraph ParseGraph(const std::string& path, const Json& json) {
   const Json none = Json::array();
   graph.first_seen = FirstSeen(path, FieldOr(json, "first_seen", none),
                                graph.positions.size());
-  graph.sightings =
-      Sightings(path, FieldOr(json, "sightings", none), graph.positions.size());
   return graph;
 }
 
@@ -165,20 +128,11 @@ void WriteGraph(const std::string& path, const DeformationGraph& graph,
   for (const Eigen::Vector3d& g : graph.positions) {
     positions.push_back({g.x(), g.y(), g.z()});
   }
-  Json sightings = Json::array();
-  for (const std::vector<FrameRun>& runs : graph.sightings) {
-    sightings.push_back(Json::array());
-    for (const FrameRun& run : runs) {
-      sightings.back().push_back(run.first);
-      sightings.back().push_back(run.last);
-    }
-  }
   const Json json = {{"node_spacing", graph.node_spacing},
                      {"neighbors_per_point", neighbors_per_point},
                      {"positions", positions},
                      {"edges", graph.neighbors},
-                     {"first_seen", graph.first_seen},
-                     {"sightings", sightings}};
+                     {"first_seen", graph.first_seen}};
   WriteFileAtomically(path, [&](std::ostream& out) { out << json << '\n'; });
 }
 

@@ -8,16 +8,16 @@
 namespace splitfusion {
 
 /// Writes `graph.json`: {"node_spacing", "neighbors_per_point", "positions":
-/// [[x, y, z], ...], "edges": [[j, ...], ...], "first_seen": [frame, ...],
-/// "sightings": [[first, last, first, last, ...], ...]}; positions canonical,
-/// metres; edges[i] are the neighbours of node i. Motions are in motions.bin.
+/// [[x, y, z], ...], "edges": [[j, ...], ...], "first_seen": [frame, ...]};
+/// positions canonical, metres; edges[i] are the neighbours of node i. Motions
+/// are in motions.bin.
 ///
 /// @throw InputError if the file cannot be written.
 void WriteGraph(const std::string& path, const DeformationGraph& graph,
                 int neighbors_per_point);
 
 /// Reads what WriteGraph wrote; motions are identity. `neighbors_per_point`
-/// may be null. "first_seen" and "sightings" may be missing or empty.
+/// may be null. "first_seen" may be missing or empty.
 ///
 /// @throw InputError on a missing or malformed file; names the field.
 DeformationGraph ReadGraph(const std::string& path, int* neighbors_per_point);

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "splitfusion/lib/visibility/known_triangles.h"
+#include "splitfusion/lib/visibility/seen_triangles.h"
 
 namespace splitfusion {
 
@@ -43,7 +43,7 @@ std::vector<Eigen::Vector3f> AnimatedSurface::VerticesAt(int frame) const {
 }
 
 std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesAt(int frame) const {
-  return KnownTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
+  return SeenTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
 }
 
 TriangleMesh AnimatedSurface::MeshAt(int frame) const {

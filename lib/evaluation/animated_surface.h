@@ -34,8 +34,7 @@ class AnimatedSurface {
   /// metres.
   std::vector<Eigen::Vector3f> VerticesAt(int frame) const;
 
-  /// Triangles of the mesh that are known in a frame (KnownTriangles), which
-  /// are all that had been seen by then if the graph has no sightings.
+  /// Triangles of the mesh that had been seen by a frame (SeenTriangles).
   std::vector<Eigen::Vector3i> TrianglesAt(int frame) const;
 
   /// Both of them, as warped/FRAME.ply has them; no normals, no colours.

@@ -265,7 +265,7 @@ Json ToJson(const RunEvaluation& evaluation) {
       evaluation.trajectory ? Json(evaluation.ground_truth) : Json();
   json["headline"] = HeadlineJson(HeadlineOf(evaluation));
   json["whole_model"] = evaluation.whole_model;
-  json["with_unknown"] = evaluation.with_unknown;
+  json["with_unknown"] = true;  // Readers of older files ask for it.
   json.update(TrajectoryJson(evaluation.trajectory));
   json["background"] = BackgroundJson(evaluation);
   json["instances"] = instances;

@@ -43,10 +43,6 @@ struct RunEvaluation {
   /// Set by the caller that cleared DeformationGraph::first_seen: the model of
   /// every frame was the whole final one.
   bool whole_model = false;
-  /// Set by the caller that cleared DeformationGraph::sightings (or
-  /// first_seen): the model of every frame held what KnownNodes() would leave
-  /// out.
-  bool with_unknown = false;
   std::optional<TrajectoryError> trajectory;  ///< ATE, RPE, alignment.
   /// The background's mesh, put into the true world by
   /// TrajectoryError::truth_from_estimate_by_poses.

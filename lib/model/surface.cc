@@ -33,9 +33,6 @@ double MedianDepth(const LiveView& live, int id) {
   return *middle;
 }
 
-/// DeformationGraph::seen of a node on which weights of one point hang.
-constexpr double kSightingShare = 1 / kSeenPoints;
-
 /// A live point as near as this to a vertex is on the mesh, voxels.
 constexpr double kModelledVoxels = 3;
 
@@ -192,7 +189,6 @@ void Surface::RecordMotions(int frame, bool tracked, const RecentViews& views) {
   }
   if (kind_ == SurfaceKind::kRigid) return;
   UpdateLastSeen();
-  UpdateSightings();
   KeepSeenEdges(history_, last_seen_, &graph_);
 }
 
@@ -202,25 +198,6 @@ void Surface::UpdateLastSeen() {
   if (!history_.frames.back().tracked) return;
   for (std::size_t i = 0; i < graph_.seen.size(); ++i) {
     if (graph_.seen[i] >= 1) last_seen_[i] = now;
-  }
-}
-
-void Surface::UpdateSightings() {
-  const FrameMotions& now = history_.frames.back();
-  std::vector<std::vector<FrameRun>>& sightings = graph_.sightings;
-  const std::size_t old = std::min(sightings.size(), graph_.seen.size());
-  for (std::size_t i = 0; now.tracked && i < old; ++i) {
-    if (graph_.seen[i] < kSightingShare) continue;
-    FrameRun& last = sightings[i].back();
-    if (last.last == now.frame - 1) {
-      last.last = now.frame;
-    } else {
-      sightings[i].push_back({now.frame, now.frame});
-    }
-  }
-  while (static_cast<int>(sightings.size()) < graph_.size()) {
-    const int first = graph_.first_seen[sightings.size()];
-    sightings.push_back({{first, now.frame}});
   }
 }
 

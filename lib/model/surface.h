@@ -140,9 +140,6 @@ class Surface {
   /// Notes which nodes the last recorded frame showed: none if it was not
   /// tracked, but new ones in any case.
   void UpdateLastSeen();
-  /// Notes the same in DeformationGraph::sightings, where weights of one point
-  /// are enough; new nodes are taken for seen since first_seen.
-  void UpdateSightings();
   /// Makes what Serialize() leaves out.
   void RestoreCaches();
 

@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "splitfusion/lib/deformation/graph_file.h"
-#include "splitfusion/lib/visibility/known_triangles.h"
+#include "splitfusion/lib/visibility/seen_triangles.h"
 
 namespace splitfusion {
 namespace {

@@ -48,16 +48,9 @@ TEST(Graph, KeepsFirstSights) {
   const TemporaryFolder folder;
   DeformationGraph graph = Triangle();
   graph.first_seen = {2, 2, 5};
-  graph.sightings = {{{2, 4}}, {{2, 2}, {6, 9}}, {{5, 5}}};
   WriteGraph(folder / "graph.json", graph, 4);
   const DeformationGraph read = ReadGraph(folder / "graph.json", nullptr);
   EXPECT_EQ(read.first_seen, graph.first_seen);
-  ASSERT_EQ(read.sightings.size(), 3u);
-  ASSERT_EQ(read.sightings[1].size(), 2u);
-  EXPECT_EQ(read.sightings[0][0].first, 2);
-  EXPECT_EQ(read.sightings[0][0].last, 4);
-  EXPECT_EQ(read.sightings[1][1].first, 6);
-  EXPECT_EQ(read.sightings[1][1].last, 9);
 }
 
 TEST(Graph, MayLackFirstSights) {
@@ -65,24 +58,6 @@ TEST(Graph, MayLackFirstSights) {
   folder.Write("graph.json", R"({"node_spacing": 1, "positions": [[1, 2, 3]],
                                  "edges": [[]]})");
   EXPECT_TRUE(ReadGraph(folder / "graph.json", nullptr).first_seen.empty());
-}
-
-TEST(Graph, SightingsAreRunsOfFrames) {
-  const TemporaryFolder folder;
-  const std::string path = folder / "graph.json";
-  const std::string head =
-      R"({"node_spacing": 1, "positions": [[1, 2, 3]], "edges": [[]], )";
-  folder.Write("graph.json", head + R"("sightings": [[3, 4], [5, 6]]})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("'sightings' has 2 entries"));
-  for (const char* wrong :
-       {"3", "null", "[]", "[3]", "[4, 3]", "[3, 4, 4]", "[5, 6, 1, 2]",
-        "[-1, 2]", "[1, null]", "\"3\"", R"({"a": 1, "b": 2})"}) {
-    folder.Write("graph.json",
-                 head + R"("sightings": [)" + std::string(wrong) + "]}");
-    EXPECT_THAT(GraphMessage(path), HasSubstr("field 'sightings'")) << wrong;
-  }
-  folder.Write("graph.json", head + R"("sightings": 7})");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("expected an array"));
 }
 
 TEST(Graph, NamesTheBadField) {
@@ -131,11 +106,6 @@ TEST(Graph, DeepOnesAreRefusedNotFollowed) {
           "first_seen": {"a": )" +
           deep + "}}");
   EXPECT_THAT(GraphMessage(path), HasSubstr("field 'first_seen'"));
-  folder.Write("graph.json",
-               R"({"node_spacing": 1, "positions": [[1, 2, 3]], "edges": [[]],
-                   "sightings": [)" +
-                   deep + "]}");
-  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'sightings'"));
 }
 
 }  // namespace

@@ -244,11 +244,6 @@ TEST(Surface, GoesBackToWhenANewPartWasFirstSeen) {
   const auto in_4 = std::count(first_seen.begin() + nodes, first_seen.end(), 4);
   EXPECT_EQ(in_4 + in_5, static_cast<int>(first_seen.size()) - nodes);
   EXPECT_GT(in_5, 2 * in_4);
-  // Since then they are taken for seen, although they were no nodes yet.
-  for (int i = nodes; i < box.graph().size(); ++i) {
-    EXPECT_EQ(box.graph().sightings[i].front().first, first_seen[i]);
-  }
-  EXPECT_GE(box.graph().sightings.back().front().last, born);
 }
 
 TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
@@ -272,39 +267,6 @@ TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
       EXPECT_GT((again[i][k] - seen[i][k]).norm(), 1e-5);
     }
   }
-}
-
-TEST(Surface, NotesTheFramesThatShowedANode) {
-  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
-  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true, RecentViews());
-  const int nodes = box.graph().size();
-  const auto record = [&](int frame, double seen, bool tracked) {
-    box.mutable_graph()->seen.assign(nodes, seen);
-    box.RecordMotions(frame, tracked, RecentViews());
-  };
-  record(5, 1, true);
-  record(6, 0.3, true);  // One correspondence.
-  record(7, 0.2, true);  // None.
-  record(8, 1, /*tracked=*/false);
-  box.Fuse(ViewWithBox(kWhole));
-  box.UpdateMesh();
-  box.Fuse(ViewWithBox(kWhole));
-  box.UpdateMesh();
-  record(9, 1, true);
-  ASSERT_GT(box.graph().size(), nodes);
-  ASSERT_EQ(static_cast<int>(box.graph().sightings.size()), box.graph().size());
-  for (int i = 0; i < nodes; ++i) {
-    const std::vector<FrameRun>& runs = box.graph().sightings[i];
-    ASSERT_EQ(runs.size(), 2u);
-    EXPECT_EQ(runs[0].first, 4);
-    EXPECT_EQ(runs[0].last, 6);
-    EXPECT_EQ(runs[1].first, 9);
-    EXPECT_EQ(runs[1].last, 9);
-  }
-  const FrameRun& young = box.graph().sightings.back().front();
-  EXPECT_EQ(young.first, box.graph().first_seen.back());
-  EXPECT_EQ(young.last, 9);
 }
 
 TEST(Surface, KnowsSeenEdgesOfNewNodes) {

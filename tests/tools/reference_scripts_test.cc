@@ -42,7 +42,6 @@ void LeadAway(const std::string& folder) {
   WriteMotions(folder + "/motions.bin", surface.motions);
   // It is no longer the run that its marker describes.
   std::filesystem::remove(std::filesystem::path(folder) / "../../run.json");
-  surface.graph.sightings.clear();
   const AnimatedSurface animated(surface);
   for (const FrameMotions& frame : surface.motions.frames) {
     WritePly(folder + "/warped/" + RunPaths::FrameName(frame.frame) + ".ply",

@@ -76,38 +76,11 @@ TEST_F(SfEvaluate, JudgesTheModelOfTheFrameOrTheWholeModel) {
                 "--whole_model needs --run");
 }
 
-TEST_F(SfEvaluate, LeavesOutWhatIsNotKnownOrNot) {
+TEST_F(SfEvaluate, JudgesWhatHadBeenSeenAndNothingElse) {
   BentPlate().WriteSequence(folder_ / "sequence", folder_ / "run");
-  const std::string path = "run/surfaces/001_thin_plate/graph.json";
-  auto graph = nlohmann::json::parse(folder_.Read(path));
-  const std::size_t nodes = graph["positions"].size();
-  graph["first_seen"] = std::vector<int>(nodes, 0);
-  // One node is seen on, and nothing holds the others.
-  graph["edges"] = std::vector<std::vector<int>>(nodes);
-  graph["sightings"] = std::vector<std::vector<int>>(nodes, {0, 0});
-  graph["sightings"][0] = {0, 100};
-  folder_.Write(path, graph.dump());
-  for (const bool unknown : {false, true}) {
-    const ProgramResult result =
-        Run("--depth_every=9 --run=" + (folder_ / "run") +
-            (unknown ? "" : " --known_only"));
-    EXPECT_EQ(result.exit_code, 0) << result.errors;
-    const auto found =
-        nlohmann::json::parse(folder_.Read("run/evaluation.json"));
-    EXPECT_EQ(found["with_unknown"], unknown);
-    const auto& plate = found["depth_agreement"][1];
-    EXPECT_EQ(plate["frames"], 2);  // 0, in which all is known, and 9.
-    const double uncovered = plate["uncovered_fraction"];
-    if (unknown) {
-      EXPECT_LT(uncovered, 0.15);  // Without edges one node carries a point.
-    } else {
-      EXPECT_NEAR(uncovered, 0.45, 0.1);
-    }
-  }
-  ExpectRefused("--known_only --trajectory=a --ground_truth=b",
-                "--known_only needs --run");
-  // The former flag for what is the default now.
   EXPECT_EQ(Run("--with_unknown --run=" + (folder_ / "run")).exit_code, 0);
+  ExpectRefused("--nowith_unknown --run=" + (folder_ / "run"),
+                "--with_unknown cannot be switched off");
 }
 
 TEST_F(SfEvaluate, NeedsNoTruthToCompareTheModelWithTheLiveDepth) {

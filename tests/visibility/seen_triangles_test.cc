@@ -1,4 +1,4 @@
-#include "splitfusion/lib/visibility/known_triangles.h"
+#include "splitfusion/lib/visibility/seen_triangles.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@ namespace {
 constexpr double kSpacing = 0.04;
 
 /// A plate of which the left half was seen in frame 3, all of it in frame 8.
-class KnownTrianglesTest : public ::testing::Test {
+class SeenTrianglesTest : public ::testing::Test {
  protected:
-  KnownTrianglesTest() {
+  SeenTrianglesTest() {
     for (const Eigen::Vector3d& g : graph_.positions) {
       graph_.first_seen.push_back(IsLeft(g) ? 3 : 8);
     }
@@ -24,8 +24,8 @@ class KnownTrianglesTest : public ::testing::Test {
 
   static bool IsLeft(const Eigen::Vector3d& node) { return node.x() < 0.3; }
 
-  std::vector<Eigen::Vector3i> KnownIn(int frame) const {
-    return KnownTriangles(mesh_, skinning_, graph_, frame);
+  std::vector<Eigen::Vector3i> SeenIn(int frame) const {
+    return SeenTriangles(mesh_, skinning_, graph_, frame);
   }
 
   /// Of a vertex from the nearest node that is in the left half (or in the
@@ -61,60 +61,35 @@ class KnownTrianglesTest : public ::testing::Test {
   std::vector<Skinning> skinning_;
 };
 
-TEST_F(KnownTrianglesTest, AreNoneBeforeTheFirstFrame) {
-  EXPECT_TRUE(KnownIn(2).empty());
+TEST_F(SeenTrianglesTest, AreNoneBeforeTheFirstFrame) {
+  EXPECT_TRUE(SeenIn(2).empty());
 }
 
-TEST_F(KnownTrianglesTest, AreThoseNearNodesThatWereSeen) {
+TEST_F(SeenTrianglesTest, AreThoseNearNodesThatWereSeen) {
   for (const int frame : {3, 7}) {
-    const std::vector<Eigen::Vector3i> seen = KnownIn(frame);
+    const std::vector<Eigen::Vector3i> seen = SeenIn(frame);
     EXPECT_EQ(seen, LeftHalf()) << frame;
     EXPECT_GT(seen.size(), 0.45 * mesh_.triangles.size());
     EXPECT_LT(seen.size(), 0.65 * mesh_.triangles.size());
   }
 }
 
-TEST_F(KnownTrianglesTest, MayLieInOneNodeAlone) {
+TEST_F(SeenTrianglesTest, MayLieInOneNodeAlone) {
   DeformationGraph rigid = MakeRigidGraph(Rigid3d::Identity());
   rigid.first_seen = {3};
   const auto skinning = SkinningIndex(rigid, 6).Skin(mesh_.vertices);
-  EXPECT_TRUE(KnownTriangles(mesh_, skinning, rigid, 2).empty());
-  EXPECT_EQ(KnownTriangles(mesh_, skinning, rigid, 3), mesh_.triangles);
+  EXPECT_TRUE(SeenTriangles(mesh_, skinning, rigid, 2).empty());
+  EXPECT_EQ(SeenTriangles(mesh_, skinning, rigid, 3), mesh_.triangles);
 }
 
-TEST_F(KnownTrianglesTest, AreAllOnceEveryNodeWasSeen) {
-  EXPECT_EQ(KnownIn(8), mesh_.triangles);
-  EXPECT_EQ(KnownIn(100), mesh_.triangles);
+TEST_F(SeenTrianglesTest, AreAllOnceEveryNodeWasSeen) {
+  EXPECT_EQ(SeenIn(8), mesh_.triangles);
+  EXPECT_EQ(SeenIn(100), mesh_.triangles);
 }
 
-TEST_F(KnownTrianglesTest, AreNotThoseOfAPartOutOfSight) {
-  // A strip that hangs on a seen end, as long as walks are: none comes back.
-  const TriangleMesh strip = PlateMesh(1.6, 0.12, 0.013, 1);
-  DeformationGraph graph = CoverWithNodes(strip, kSpacing);
-  graph.first_seen.assign(graph.size(), 0);
-  for (const Eigen::Vector3d& g : graph.positions) {
-    graph.sightings.push_back({{0, IsLeft(g) ? 60 : 5}});
-  }
-  const auto skinning = SkinningIndex(graph, 6).Skin(strip.vertices);
-  EXPECT_EQ(KnownTriangles(strip, skinning, graph, 5), strip.triangles);
-  EXPECT_EQ(SeenTriangles(strip, skinning, graph, 60), strip.triangles);
-  const auto known = KnownTriangles(strip, skinning, graph, 60);
-  EXPECT_GT(known.size(), 0.2 * strip.triangles.size());
-  EXPECT_LT(known.size(), 0.7 * strip.triangles.size());
-  for (const Eigen::Vector3i& t : known) {
-    EXPECT_LT(strip.vertices[t[0]].x(), 1.2);
-  }
-}
-
-TEST_F(KnownTrianglesTest, AreThoseThatWereSeenIfNothingWasLostFromSight) {
-  for (const int frame : {0, 2, 5, 8}) {
-    EXPECT_EQ(SeenTriangles(mesh_, skinning_, graph_, frame), KnownIn(frame));
-  }
-}
-
-TEST_F(KnownTrianglesTest, AreAllWhereNothingIsKnown) {
+TEST_F(SeenTrianglesTest, AreAllWhereNothingIsRecorded) {
   graph_.first_seen.clear();
-  EXPECT_EQ(KnownIn(0), mesh_.triangles);
+  EXPECT_EQ(SeenIn(0), mesh_.triangles);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-#ifndef SPLITFUSION_LIB_VISIBILITY_KNOWN_TRIANGLES_H_
-#define SPLITFUSION_LIB_VISIBILITY_KNOWN_TRIANGLES_H_
+#ifndef SPLITFUSION_LIB_VISIBILITY_SEEN_TRIANGLES_H_
+#define SPLITFUSION_LIB_VISIBILITY_SEEN_TRIANGLES_H_
 
 #include <Eigen/Core>
 #include <vector>
@@ -10,8 +10,9 @@
 
 namespace splitfusion {
 
-/// The part of a surface's final mesh of which it is known where it was in a
-/// frame: triangles whose corners lie near known nodes (KnownNodes).
+/// The part of a surface's final mesh that had been seen by a frame: triangles
+/// whose corners lie near nodes that had been (DeformationGraph::first_seen),
+/// wherever they are by now; all triangles where that is not recorded.
 ///
 /// A node is near as far as the node spacing: so far the graph did not grow. At
 /// GraphOptions::max_nodes it does not grow at all, and what is new is near an
@@ -20,20 +21,13 @@ namespace splitfusion {
 /// Motions carry every vertex to every frame, but those of a node before it
 /// was made are only blended from the nodes around it: an arm that came into
 /// view raised would stick out, raised and in free space, in all frames before.
-/// And a leg that went behind the other one is carried on as it was.
 ///
 /// `mesh` canonical, metres; `skinning`: of its vertices by the nodes of
 /// `graph`.
-std::vector<Eigen::Vector3i> KnownTriangles(
-    const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
-    const DeformationGraph& graph, int frame);
-
-/// The part of a surface's final mesh that had been seen by a frame: the same
-/// near nodes that had been (SeenNodes), wherever they are by now.
 std::vector<Eigen::Vector3i> SeenTriangles(
     const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
     const DeformationGraph& graph, int frame);
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_VISIBILITY_KNOWN_TRIANGLES_H_
+#endif  // SPLITFUSION_LIB_VISIBILITY_SEEN_TRIANGLES_H_
