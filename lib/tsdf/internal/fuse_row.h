@@ -116,8 +116,7 @@ SPLITFUSION_INLINE void SeeRow(const FusionView& view,
   row->changes = Pack::Less(reach, sdf);
 }
 
-/// Where space is free for sure, DepthState::kFree of
-/// lib/geometry/depth_comparison.h: the truncation and kFreeSpaceSigmas of
+/// Where space is free for sure: the truncation and kFreeSpaceSigmas of
 /// splitfusion::DepthSigma(), its square multiplied out.
 template <typename Pack>
 SPLITFUSION_INLINE typename Pack::Real FreeFrom(
