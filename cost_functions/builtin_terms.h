@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_COST_FUNCTIONS_BUILTIN_TERMS_H_
 #define SPLITFUSION_COST_FUNCTIONS_BUILTIN_TERMS_H_
 
+#include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/energy/term_registry.h"
 
 namespace splitfusion {

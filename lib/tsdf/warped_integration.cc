@@ -192,17 +192,17 @@ bool IntegrateLeaf(const DepthObservation& observation,
                    const WarpedLattice& warped,
                    const internal::LeafBuffers& leaf) {
   float lattice[kLatticePoints][3];
+  Eigen::AlignedBox3f box;
   for (int i = 0; i < kLatticePoints; ++i) {
     for (int axis = 0; axis < 3; ++axis) lattice[i][axis] = warped[i][axis];
+    box.extend(warped[i]);
   }
-  const internal::FusionView& view = image.view();
-  const internal::ImageBox box = internal::BoundLattice(view, lattice);
-  if (box.z_low >= image.MayChange(box).farthest) return false;
+  if (box.min().z() >= image.Farthest(box)) return false;
   bool foreign[internal::kLatticeCells] = {};
   if (!observation.places.empty()) {
     MarkForeign(observation, voxel, leaf.origin, warped, foreign);
   }
-  return internal::FuseWarpedLeaf(view, lattice, foreign,
+  return internal::FuseWarpedLeaf(image.view(), lattice, foreign,
                                   internal::ToFused(leaf));
 }
 

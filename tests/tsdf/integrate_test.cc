@@ -68,11 +68,12 @@ void IntegrateEverything(const DepthObservation& seen,
         motion * (voxel * Eigen::Vector3f(static_cast<float>(origin.x()),
                                           static_cast<float>(origin.y()),
                                           static_cast<float>(origin.z())));
-    internal::RigidBlock block = {{base.x(), base.y(), base.z()},
-                                  {kInfinity, false},
-                                  internal::ToFused(grids.leaves[i])};
-    internal::FuseRigidBlocks(image.view(), steps, &block, 1);
-    if (block.changed) grids.RecordChange(i, block.has_inside);
+    const internal::RigidLeaf leaf = {{base.x(), base.y(), base.z()},
+                                      kInfinity,
+                                      internal::ToFused(grids.leaves[i])};
+    if (internal::FuseRigidLeaf(image.view(), steps, leaf, leaf.leaf)) {
+      grids.RecordChange(i, internal::HasInside(leaf.leaf));
+    }
   }
 }
 

@@ -9,15 +9,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <ostream>
 #include <random>
-#include <string>
 
 #include "splitfusion/lib/geometry/point_map.h"
 #include "splitfusion/lib/tsdf/internal/fusion_image.h"
-#include "splitfusion/lib/tsdf/internal/image_box.h"
 #include "splitfusion/lib/tsdf/internal/packed_color.h"
-#include "splitfusion/lib/tsdf/internal/rigid_fusion.h"
 #include "support/sample_depth.h"
 
 namespace splitfusion {
@@ -25,7 +21,7 @@ namespace internal {
 namespace {
 
 constexpr float kVoxel = 0.01f;
-const FusedPart kAll = {std::numeric_limits<float>::infinity(), false};
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 const TsdfOptions kOptions = {kVoxel, 0.04, 20, 5};
 
 /// A block's voxels.
@@ -173,9 +169,18 @@ struct Placement {
            steps.cast<double>() * Eigen::Vector3d(x, y, z);
   }
 
-  /// As a block that may change where `part` says.
-  RigidBlock ToBlock(const FusedPart& part, Block* block) const {
-    return {{base.x(), base.y(), base.z()}, part, block->leaf()};
+  /// As a block of which nothing farther away may change.
+  RigidLeaf ToRigid(float farthest, Block* block) const {
+    return {{base.x(), base.y(), base.z()}, farthest, block->leaf()};
+  }
+
+  /// Bounding box of the voxels.
+  Eigen::AlignedBox3f Box() const {
+    Eigen::AlignedBox3f box;
+    for (int i = 0; i < 8; ++i) {
+      box.extend(At(7 * (i >> 2), 7 * (i >> 1 & 1), 7 * (i & 1)).cast<float>());
+    }
+    return box;
   }
 };
 
@@ -198,7 +203,7 @@ class VoxelFusion : public ::testing::Test {
   FusionImage image_{seen_, kOptions, /*time=*/3};
 };
 
-/// Steps as FuseRigidBlocks() has them.
+/// Steps as FuseRigidLeaf() has them.
 struct Steps {
   explicit Steps(const Eigen::Matrix3f& axes) {
     for (int i = 0; i < 9; ++i) rows[i / 3][i % 3] = axes(i % 3, i / 3);
@@ -207,17 +212,14 @@ struct Steps {
 };
 
 TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
-  int changed_blocks = 0, inside_blocks = 0, uncertain = 0;
+  int changed_blocks = 0, uncertain = 0;
   for (int round = 0; round < 300; ++round) {
     const Placement at = RandomPlacement(&random_);
     const Steps steps(at.steps);
-    Block before = RandomBlock(&random_);
-    if (round % 2 == 0) {  // Nothing of it is inside, at first.
-      for (float& d : before.distance) d = std::abs(d) + 0.01f;
-    }
+    const Block before = RandomBlock(&random_);
     Block block = before, expected = before;
-    RigidBlock rigid = at.ToBlock(kAll, &block);
-    FuseRigidBlocks(image_.view(), steps.rows, &rigid, 1);
+    const bool changed = FuseRigidLeaf(
+        image_.view(), steps.rows, at.ToRigid(kInfinity, &block), block.leaf());
     for (int i = 0; i < 512; ++i) {
       if (UpdateVoxel(seen_, image_.view().dither,
                       at.At(i / 64, i / 8 % 8, i % 8), i, &expected)) {
@@ -226,150 +228,57 @@ TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
         ++uncertain;
       }
     }
-    EXPECT_TRUE(rigid.changed || block.distance == before.distance);
-    EXPECT_EQ(rigid.has_inside, rigid.changed && IsAnyInside(block));
-    inside_blocks += rigid.has_inside;
-    changed_blocks += rigid.changed;
+    EXPECT_TRUE(changed || block.distance == before.distance);
+    EXPECT_EQ(HasInside(block.leaf()), IsAnyInside(block));
+    changed_blocks += changed;
     // No block that changes may be passed over.
-    ImageBox box;
-    BoundBlocks(image_.view(), &rigid, 1, steps.rows, &box);
-    const FusedPart part = image_.MayChange(box);
-    EXPECT_TRUE(box.z_low < part.farthest || block == before);
+    const float farthest = image_.Farthest(at.Box());
+    EXPECT_TRUE(at.Box().min().z() < farthest || block == before);
     // Nor any part of one.
     Block bounded = before;
-    RigidBlock in_part = at.ToBlock(part, &bounded);
-    FuseRigidBlocks(image_.view(), steps.rows, &in_part, 1);
+    FuseRigidLeaf(image_.view(), steps.rows, at.ToRigid(farthest, &bounded),
+                  bounded.leaf());
     EXPECT_TRUE(bounded == block) << "round " << round;
   }
   EXPECT_GT(changed_blocks, 50);
   EXPECT_LT(changed_blocks, 250);
-  EXPECT_GT(inside_blocks, 25);
-  EXPECT_LT(inside_blocks, changed_blocks);
   EXPECT_LT(uncertain, 300 * 512 / 100);
 }
 
-/// A version of FuseRigidBlocks() and what runs it.
-struct FusionVersion {
-  const char* processor;
-  RigidFusion (*get)();
-};
-
-void PrintTo(const FusionVersion& version, std::ostream* out) {
-  *out << version.processor;
-}
-
-class FusionVersions : public VoxelFusion,
-                       public testing::WithParamInterface<FusionVersion> {};
-
-TEST_P(FusionVersions, GivesTheNumbersOfThePortableOne) {
-  const RigidFusion fuse = GetParam().get();
-  if (fuse == nullptr) {
-    GTEST_SKIP() << "this processor, or this build, has no "
-                 << GetParam().processor;
-  }
-  int in_image = 0;
-  for (int round = 0; round < 200; ++round) {
+TEST_F(VoxelFusion, WithoutColorDistancesAndWeightsAreTheSame) {
+  for (int round = 0; round < 40; ++round) {
     const Placement at = RandomPlacement(&random_);
     const Steps steps(at.steps);
-    // Both ways: every pixel tested, and what is known of the block used.
-    Block unused;
-    const RigidBlock bounded = at.ToBlock(kAll, &unused);
-    ImageBox box;
-    BoundBlocks(image_.view(), &bounded, 1, steps.rows, &box);
-    const FusedPart known = image_.MayChange(box);
-    in_image += known.in_image;
-    for (const FusedPart& part : {kAll, known}) {
-      Block expected = RandomBlock(&random_);
-      Block block = expected;
-      RigidBlock expected_block = at.ToBlock(part, &expected);
-      RigidBlock rigid_block = at.ToBlock(part, &block);
-      PortableFusion()(image_.view(), steps.rows, &expected_block, 1);
-      fuse(image_.view(), steps.rows, &rigid_block, 1);
-      EXPECT_TRUE(block == expected) << "round " << round;
-      EXPECT_EQ(rigid_block.changed, expected_block.changed);
-      EXPECT_EQ(rigid_block.has_inside, expected_block.has_inside);
-    }
+    Block colored = RandomBlock(&random_);
+    Block plain = colored;
+    RigidLeaf without = at.ToRigid(kInfinity, &plain);
+    without.leaf.color = nullptr;
+    FuseRigidLeaf(image_.view(), steps.rows, at.ToRigid(kInfinity, &colored),
+                  colored.leaf());
+    FuseRigidLeaf(image_.view(), steps.rows, without, without.leaf);
+    plain.color = colored.color;
+    EXPECT_TRUE(plain == colored) << "round " << round;
   }
-  EXPECT_GT(in_image, 20);
 }
 
-TEST_P(FusionVersions, FusesBlocksInARowWithAndWithoutColor) {
-  const RigidFusion fuse = GetParam().get();
-  if (fuse == nullptr) {
-    GTEST_SKIP() << "this processor, or this build, has no "
-                 << GetParam().processor;
-  }
-  constexpr int kCount = 3;
-  int changed = 0;
-  for (int round = 0; round < 40; ++round) {
-    const Placement first = RandomPlacement(&random_);
-    const Steps steps(first.steps);
-    std::array<Block, kCount> blocks, expected;
-    std::vector<RigidBlock> rigid, expected_rigid;
-    for (int i = 0; i < kCount; ++i) {
-      Placement at = RandomPlacement(&random_);
-      at.steps = first.steps;
-      blocks[i] = expected[i] = RandomBlock(&random_);
-      rigid.push_back(at.ToBlock(kAll, &blocks[i]));
-      expected_rigid.push_back(at.ToBlock(kAll, &expected[i]));
-      if (round % 2 == 0) continue;
-      rigid[i].leaf.color = expected_rigid[i].leaf.color = nullptr;
-    }
-    PortableFusion()(image_.view(), steps.rows, expected_rigid.data(), kCount);
-    fuse(image_.view(), steps.rows, rigid.data(), kCount);
-    for (int i = 0; i < kCount; ++i) {
-      EXPECT_TRUE(blocks[i] == expected[i]) << "round " << round;
-      EXPECT_EQ(rigid[i].changed, expected_rigid[i].changed);
-      changed += rigid[i].changed;
-    }
-  }
-  EXPECT_GT(changed, kCount);
-}
-
-INSTANTIATE_TEST_SUITE_P(Processors, FusionVersions,
-                         testing::Values(FusionVersion{"AVX512", Avx512Fusion},
-                                         FusionVersion{"AVX2", Avx2Fusion}),
-                         [](const auto& info) {
-                           return std::string(info.param.processor);
-                         });
-
-TEST_F(VoxelFusion, BoxesHoldTheVoxelsOfEveryBlock) {
-  constexpr int kCount = 11;  // No multiple of the lanes.
-  const Placement all = RandomPlacement(&random_);
-  const Steps steps(all.steps);
-  Block unused;
-  std::vector<Placement> placements;
-  std::vector<RigidBlock> blocks;
-  for (int i = 0; i < kCount; ++i) {
-    placements.push_back({RandomPlacement(&random_).base, all.steps});
-    // Some around the camera, some behind it.
-    if (i % 5 == 1) placements[i].base.z() = 0.03f;
-    if (i % 5 == 3) placements[i].base.z() = -0.5f;
-    blocks.push_back(placements[i].ToBlock(kAll, &unused));
-  }
-  ImageBox boxes[kCount];
-  BoundBlocks(image_.view(), blocks.data(), kCount, steps.rows, boxes);
-  int in_front = 0;
-  for (int i = 0; i < kCount; ++i) {
-    Eigen::AlignedBox3d expected;  // Of u, v and z.
-    for (int k = 0; k < 512; ++k) {
-      const Eigen::Vector3d p = placements[i].At(k / 64, k / 8 % 8, k % 8);
-      const PinholeCamera& camera = seen_.camera;
-      expected.extend(Eigen::Vector3d(camera.fx * p.x() / p.z() + camera.cx,
-                                      camera.fy * p.y() / p.z() + camera.cy,
-                                      p.z()));
-    }
-    EXPECT_NEAR(boxes[i].z_low, expected.min().z(), 1e-5);
-    EXPECT_EQ(boxes[i].in_front, expected.min().z() > 0.05);
-    if (!boxes[i].in_front) continue;
-    ++in_front;
-    EXPECT_NEAR(boxes[i].u_low, expected.min().x(), 0.05);
-    EXPECT_NEAR(boxes[i].v_low, expected.min().y(), 0.05);
-    EXPECT_NEAR(boxes[i].u_high, expected.max().x(), 0.05);
-    EXPECT_NEAR(boxes[i].v_high, expected.max().y(), 0.05);
-  }
-  EXPECT_GT(in_front, 4);
-  EXPECT_LT(in_front, kCount - 3);
+TEST_F(VoxelFusion, BoxesAreBoundedByTheFarthestPixelTheyMayMeet) {
+  // A wall at 1 m; only the left half of the image writes behind it.
+  seen_ = ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1));
+  const int middle = seen_.role.cols / 2;
+  seen_.role.colRange(middle, seen_.role.cols)
+      .setTo(static_cast<int>(PixelRole::kCarve));
+  const FusionImage image(seen_, kOptions, 1);
+  const auto farthest = [&](const Eigen::Vector3f& center) {
+    const Eigen::Vector3f half = Eigen::Vector3f::Constant(0.02f);
+    return image.Farthest({center - half, center + half});
+  };
+  const auto truncation = static_cast<float>(kOptions.truncation);
+  EXPECT_NEAR(farthest({-0.3f, 0, 1}), 1 + truncation, 2e-3);
+  EXPECT_NEAR(farthest({0.3f, 0, 1}), 1 - truncation, 2e-3);
+  EXPECT_EQ(farthest({0, 0, 0.05f}), kInfinity);  // Around the camera.
+  EXPECT_EQ(farthest({0, 0, -0.5f}), -kInfinity);
+  EXPECT_EQ(farthest({5, 0, 1}), -kInfinity);
+  EXPECT_EQ(farthest({0, -5, 1}), -kInfinity);
 }
 
 TEST(HasInside, OneObservedVoxelIsEnough) {
@@ -427,8 +336,9 @@ TEST_F(VoxelFusion, AWarpedBlockIsUpdatedWhereItsLatticeCarriesIt) {
         ExpectSameVoxel(block, expected, i);
       }
     }
-    const ImageBox box = BoundLattice(image_.view(), lattice);
-    EXPECT_TRUE(box.z_low < image_.MayChange(box).farthest || block == before);
+    Eigen::AlignedBox3f box;
+    for (const auto& p : lattice) box.extend(Eigen::Vector3f(p));
+    EXPECT_TRUE(box.min().z() < image_.Farthest(box) || block == before);
   }
 }
 
@@ -471,9 +381,8 @@ TEST_F(VoxelFusion, FreeSpaceThatIsKnownWellDoesNotChange) {
   block.color.fill(0);
   const float steps[3][3] = {{kVoxel, 0, 0}, {0, kVoxel, 0}, {0, 0, kVoxel}};
   const auto fuse_into = [&](const FusionImage& seen) {
-    RigidBlock rigid = {{0, 0, 1}, kAll, block.leaf()};
-    FuseRigidBlocks(seen.view(), steps, &rigid, 1);
-    return rigid.changed;
+    return FuseRigidLeaf(seen.view(), steps,
+                         {{0, 0, 1}, kInfinity, block.leaf()}, block.leaf());
   };
   const auto fuse = [&](float weight) {
     block.weight.fill(weight);

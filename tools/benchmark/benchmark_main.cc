@@ -1,13 +1,11 @@
 // Runs the benchmarks in random order, each some times, and prints one table of
 // medians; exit code 1 if a row fails, 2 if an argument is wrong. run.sh --help
-// has the arguments.
+// has the arguments; those of Google Benchmark are understood, too.
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -22,64 +20,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Arguments by name, with their defaults.
-using Arguments = std::map<std::string, std::string>;
-
-Arguments ParseArguments(int argc, char** argv) {
-  Arguments arguments = {
-      {"filter", ""}, {"json", ""}, {"repetitions", "5"}, {"min_time", "0.1"}};
-  for (int i = 1; i < argc; ++i) {
-    const std::string text = argv[i];
-    const std::size_t equals = text.find('=');
-    const bool is_flag = text.rfind("--", 0) == 0 && equals < text.size();
-    const auto argument =
-        arguments.find(is_flag ? text.substr(2, equals - 2) : "");
-    if (argument == arguments.end()) {
-      throw InputError(text +
-                       ": unknown argument: expected --filter=REGEX, "
-                       "--json=FILE, --repetitions=N or "
-                       "--min_time=SECONDS");
-    }
-    argument->second = text.substr(equals + 1);
-  }
-  return arguments;
-}
-
-/// The number that an argument gives.
-///
-/// @throw InputError unless it is one of `least` or more.
-double Number(const Arguments& arguments, const std::string& name,
-              double least) {
-  std::istringstream text(arguments.at(name));
-  double value = 0;
-  const bool whole = text >> value && text.peek() == EOF;
-  CheckOption(whole && value >= least, "--" + name, arguments.at(name),
-              "a number from " + std::to_string(least));
-  return value;
-}
-
-/// Settings of Google Benchmark, by its own flags.
-void Configure(std::vector<std::string> flags) {
+/// Gives Google Benchmark its own flags; returns what it does not know.
+std::vector<std::string> Initialize(std::vector<std::string> flags) {
   flags.insert(flags.begin(), "sf_benchmark");
   std::vector<char*> argv;
   for (std::string& flag : flags) argv.push_back(flag.data());
   argv.push_back(nullptr);
   int argc = static_cast<int>(flags.size());
   benchmark::Initialize(&argc, argv.data());
-  if (argc > 1) throw InputError(std::string(argv[1]) + ": not understood");
+  return {argv.begin() + 1, argv.begin() + argc};
 }
 
 /// Names of all benchmarks and companions.
 std::vector<std::string> RegisteredNames() {
-  Configure({"--benchmark_list_tests=true"});
-  std::ostringstream listing;
+  Initialize({"--benchmark_list_tests=true"});
+  std::stringstream listing;
   BenchmarkReport reporter;
   reporter.SetOutputStream(&listing);
   benchmark::RunSpecifiedBenchmarks(&reporter, "all");
-  Configure({"--benchmark_list_tests=false"});
+  Initialize({"--benchmark_list_tests=false"});
   std::vector<std::string> names;
-  std::istringstream lines(listing.str());
-  for (std::string line; std::getline(lines, line);) names.push_back(line);
+  for (std::string line; std::getline(listing, line);) names.push_back(line);
   return names;
 }
 
@@ -103,9 +64,8 @@ std::string Selection(const std::string& filter) {
     throw OptionError("--filter", filter, "to match a benchmark's name");
   }
   std::string alternatives;
-  for (const std::string& name : selected) {
-    alternatives += (alternatives.empty() ? "" : "|") + name;
-  }
+  for (const std::string& name : selected) alternatives += name + "|";
+  alternatives.pop_back();
   return "^(" + alternatives + ")(/|$)";
 }
 
@@ -117,17 +77,27 @@ void CheckWritable(const std::string& file) {
   }
 }
 
-int Run(const Arguments& arguments) {
-  const std::string& json = arguments.at("json");
+int Run(int argc, char** argv) {
+  std::string filter, json;
+  std::vector<std::string> flags = {
+      "--benchmark_enable_random_interleaving=true",
+      "--benchmark_repetitions=5", "--benchmark_min_time=0.1"};
+  flags.insert(flags.end(), argv + 1, argv + argc);
+  for (const std::string& text : Initialize(flags)) {
+    const std::string value = text.substr(text.find('=') + 1);
+    if (text.rfind("--filter=", 0) == 0) {
+      filter = value;
+    } else if (text.rfind("--json=", 0) == 0) {
+      json = value;
+    } else {
+      throw InputError(text +
+                       ": unknown argument: expected --filter=REGEX, "
+                       "--json=FILE or --benchmark_...");
+    }
+  }
   if (!json.empty()) CheckWritable(json);
-  Number(arguments, "repetitions", 1);
-  Number(arguments, "min_time", 1e-3);
-  const std::string selection = Selection(arguments.at("filter"));
-  Configure({"--benchmark_enable_random_interleaving=true",
-             "--benchmark_repetitions=" + arguments.at("repetitions"),
-             "--benchmark_min_time=" + arguments.at("min_time")});
   BenchmarkReport report;
-  benchmark::RunSpecifiedBenchmarks(&report, selection);
+  benchmark::RunSpecifiedBenchmarks(&report, Selection(filter));
   report.PrintTable(&std::cout);
   for (const std::string& error : report.errors()) {
     std::cerr << "sf_benchmark: " << error << '\n';
@@ -145,7 +115,7 @@ int Run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   splitfusion::KeepFreedMemory();
   try {
-    return splitfusion::Run(splitfusion::ParseArguments(argc, argv));
+    return splitfusion::Run(argc, argv);
   } catch (const splitfusion::InputError& error) {
     std::cerr << "sf_benchmark: " << error.what() << '\n';
     return 2;

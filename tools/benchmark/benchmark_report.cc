@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <iomanip>
-#include <sstream>
 
 #include "splitfusion/lib/report/run_summary.h"
 
 namespace splitfusion {
 namespace {
-
-constexpr char kFloor[] = "floor";
 
 /// Name of a run without what Google Benchmark appends of its settings.
 std::string NameOf(const benchmark::BenchmarkReporter::Run& run) {
@@ -18,20 +15,19 @@ std::string NameOf(const benchmark::BenchmarkReporter::Run& run) {
          arguments;
 }
 
-std::string Fixed(double value, int digits) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(digits) << value;
-  return text.str();
-}
-
-std::string Milliseconds(double seconds) { return Fixed(1e3 * seconds, 3); }
-
-void PrintLine(const std::string& name, const std::string& time,
-               const std::string& floor, const std::string& over_floor,
-               const std::string& companions, std::ostream* out) {
-  *out << std::left << std::setw(24) << name << std::right << std::setw(12)
-       << time << std::setw(12) << floor << std::setw(12) << over_floor
-       << (companions.empty() ? "" : "  ") << companions << '\n';
+/// What programs ask of gn_iteration, where its companions have been run.
+void AddRatios(nlohmann::json* row) {
+  const nlohmann::json companions = row->value("companions", nlohmann::json());
+  const auto add = [&](const char* name, const char* above, double below) {
+    if (companions.contains(above) && below > 0) {
+      (*row)[name] = companions[above].get<double>() / below;
+    }
+  };
+  const double time = row->at("time");
+  add("reference_36_over_gn_pcg", "reference_36", time);
+  add("reference_36_over_ceres_grouped", "reference_36",
+      companions.value("ceres_grouped", 0.0));
+  add("custom_term_over_builtin", "custom_term", time);
 }
 
 }  // namespace
@@ -46,82 +42,61 @@ void BenchmarkReport::ReportRuns(const std::vector<Run>& runs) {
     } else if (run.error_message.rfind(kSkipped, 0) == 0) {
       skipped_[name] = run.error_message;
     } else {
-      const std::string error = name + ": " + run.error_message;
-      if (std::find(errors_.begin(), errors_.end(), error) == errors_.end()) {
-        errors_.push_back(error);
-      }
+      errors_.insert(name + ": " + run.error_message);
     }
   }
 }
 
-std::map<std::string, BenchmarkReport::Row> BenchmarkReport::Rows() const {
-  std::map<std::string, Row> rows;
-  for (const auto& [name, seconds] : seconds_) {
-    if (name.find('/') == std::string::npos) rows[name].time = Median(seconds);
-  }
-  for (const auto& [name, seconds] : seconds_) {
+nlohmann::json BenchmarkReport::ToJson() const {
+  nlohmann::json rows = nlohmann::json::object();
+  for (const auto& [name, seconds] : seconds_) {  // Rows before companions.
     const std::size_t slash = name.find('/');
-    const auto row = rows.find(name.substr(0, slash));
-    if (slash == std::string::npos || row == rows.end()) continue;
-    row->second.companions[name.substr(slash + 1)] = Median(seconds);
+    const std::string row_name = name.substr(0, slash);
+    const double median = Median(seconds);
+    if (slash == std::string::npos) {
+      rows[name] = {
+          {"time", median}, {"floor", nullptr}, {"over_floor", nullptr}};
+    } else if (rows.contains(row_name)) {
+      nlohmann::json& row = rows[row_name];
+      const std::string companion = name.substr(slash + 1);
+      if (companion == "floor") {
+        row["floor"] = median;
+        row["over_floor"] = row["time"].get<double>() / median;
+      } else {
+        row["companions"][companion] = median;
+      }
+    }
   }
+  if (rows.contains("gn_iteration")) AddRatios(&rows["gn_iteration"]);
   return rows;
 }
 
 void BenchmarkReport::PrintTable(std::ostream* out) const {
-  PrintLine("benchmark", "time ms", "floor ms", "over floor", "", out);
-  for (const auto& [name, row] : Rows()) {
-    std::string floor = "-", over_floor = "-", companions;
-    for (const auto& [companion, seconds] : row.companions) {
-      if (companion == kFloor) {
-        floor = Milliseconds(seconds);
-        over_floor = Fixed(row.time / seconds, 2);
-        continue;
-      }
-      companions += (companions.empty() ? "" : ", ") + companion + " " +
-                    Fixed(seconds / row.time, 2) + "x";
+  *out << std::left << std::setw(24) << "benchmark" << std::right
+       << std::setw(12) << "time ms" << std::setw(12) << "floor ms"
+       << std::setw(12) << "over floor" << std::fixed << '\n';
+  const auto print = [&](const nlohmann::json& value, int digits,
+                         double scale) {
+    *out << std::setw(12) << std::setprecision(digits);
+    value.is_null() ? *out << "-" : *out << scale * value.get<double>();
+  };
+  const nlohmann::json rows = ToJson();
+  for (const auto& [name, row] : rows.items()) {
+    *out << std::left << std::setw(24) << name << std::right;
+    print(row["time"], 3, 1e3);
+    print(row["floor"], 3, 1e3);
+    print(row["over_floor"], 2, 1);
+    const nlohmann::json companions =
+        row.value("companions", nlohmann::json::object());
+    for (const auto& [companion, seconds] : companions.items()) {
+      *out << "  " << companion << ' '
+           << seconds.get<double>() / row["time"].get<double>() << 'x';
     }
-    PrintLine(name, Milliseconds(row.time), floor, over_floor, companions, out);
+    *out << '\n';
   }
   for (const auto& [name, message] : skipped_) {
     *out << std::left << std::setw(24) << name << "  " << message << '\n';
   }
-}
-
-std::map<std::string, double> BenchmarkReport::Ratios(const Row& row) {
-  std::map<std::string, double> ratios;
-  const auto reference = row.companions.find("reference_36");
-  const auto grouped = row.companions.find("ceres_grouped");
-  const auto custom = row.companions.find("custom_term");
-  if (reference != row.companions.end()) {
-    ratios["reference_36_over_gn_pcg"] = reference->second / row.time;
-    if (grouped != row.companions.end()) {
-      ratios["reference_36_over_ceres_grouped"] =
-          reference->second / grouped->second;
-    }
-  }
-  if (custom != row.companions.end()) {
-    ratios["custom_term_over_builtin"] = custom->second / row.time;
-  }
-  return ratios;
-}
-
-nlohmann::json BenchmarkReport::ToJson() const {
-  nlohmann::json all = nlohmann::json::object();
-  for (const auto& [name, row] : Rows()) {
-    nlohmann::json& entry = all[name];
-    entry = {{"time", row.time}, {"floor", nullptr}, {"over_floor", nullptr}};
-    for (const auto& [companion, seconds] : row.companions) {
-      if (companion == kFloor) {
-        entry["floor"] = seconds;
-        entry["over_floor"] = row.time / seconds;
-      } else {
-        entry["companions"][companion] = seconds;
-      }
-    }
-    if (name == "gn_iteration") entry.update(nlohmann::json(Ratios(row)));
-  }
-  return all;
 }
 
 }  // namespace splitfusion

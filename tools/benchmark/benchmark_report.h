@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,8 @@ class BenchmarkReport : public benchmark::BenchmarkReporter {
   /// Keeps the times of all repetitions.
   void ReportRuns(const std::vector<Run>& runs) override;
 
-  /// Rows that failed, "name: message", by name.
-  const std::vector<std::string>& errors() const { return errors_; }
+  /// Rows that failed, "name: message".
+  const std::set<std::string>& errors() const { return errors_; }
 
   /// Prints the medians over the repetitions: a line a benchmark with its time
   /// and its floor's, and companions as multiples of its time.
@@ -36,22 +37,13 @@ class BenchmarkReport : public benchmark::BenchmarkReporter {
 
   /// The same as an object by benchmark: `time` and `floor` (seconds),
   /// `over_floor`; null where there is no floor. `companions`: seconds by name.
-  /// `gn_iteration` also has the ratios of Ratios().
+  /// `gn_iteration` also has the ratios of the times.
   nlohmann::json ToJson() const;
 
  private:
-  /// Medians of one benchmark, seconds.
-  struct Row {
-    double time;
-    std::map<std::string, double> companions;  // The floor is one.
-  };
-
-  static std::map<std::string, double> Ratios(const Row& row);
-  std::map<std::string, Row> Rows() const;
-
   std::map<std::string, std::vector<double>> seconds_;  // By full name.
   std::map<std::string, std::string> skipped_;
-  std::vector<std::string> errors_;
+  std::set<std::string> errors_;
 };
 
 }  // namespace splitfusion

@@ -127,41 +127,21 @@ void FloorRows::Add(const std::vector<int>& group_nodes,
   begin.push_back(static_cast<int>(residuals.size()));
 }
 
-EnergyFloor::EnergyFloor(int nodes, FloorRows points, FloorRows edges)
+EnergyFloor::EnergyFloor(const SymmetricBlockMatrix& pattern, FloorRows points,
+                         FloorRows edges)
     : points_(std::move(points)), edges_(std::move(edges)), shares_(1) {
-  MakePattern(nodes);
+  FloorMatrix& matrix = shares_[0];
+  matrix.row_begin = pattern.row_begin();
+  matrix.columns = pattern.columns();
+  matrix.blocks.resize(36 * matrix.columns.size());
+  matrix.gradient.resize(6 * pattern.size());
   PlaceBlocks(&points_);
   PlaceBlocks(&edges_);
   shares_.resize(tbb::this_task_arena::max_concurrency(), shares_[0]);
-  inverse_.resize(36 * nodes);
+  inverse_.resize(36 * pattern.size());
   for (FloorArray* vector : {&x_, &r_, &z_, &d_, &q_}) {
-    vector->resize(6 * nodes);
+    vector->resize(6 * pattern.size());
   }
-}
-
-void EnergyFloor::MakePattern(int nodes) {
-  std::vector<std::pair<int, int>> pairs;
-  for (const FloorRows* rows : {&points_, &edges_}) {
-    const int n = rows->nodes_per_row;
-    for (std::size_t i = 0; i < rows->nodes.size(); ++i) {
-      for (std::size_t j = i; j < (i / n + 1) * n; ++j) {
-        pairs.emplace_back(rows->nodes[i], rows->nodes[j]);
-      }
-    }
-  }
-  for (int i = 0; i < nodes; ++i) pairs.emplace_back(i, i);
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  FloorMatrix& matrix = shares_[0];
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (pairs[i].first == pairs[i].second) {
-      matrix.row_begin.push_back(static_cast<int>(i));
-    }
-    matrix.columns.push_back(pairs[i].second);
-  }
-  matrix.row_begin.push_back(static_cast<int>(pairs.size()));
-  matrix.blocks.resize(36 * pairs.size());
-  matrix.gradient.resize(6 * nodes);
 }
 
 void EnergyFloor::PlaceBlocks(FloorRows* rows) const {
@@ -239,14 +219,6 @@ int EnergyFloor::Solve(double tolerance, int max_iterations) {
     rz = next;
   }
   return max_iterations;
-}
-
-void EnergyFloor::Multiply(int count) {
-  const FloorMatrix& a = shares_[0];
-  for (int i = 0; i < count; ++i) {
-    MultiplySymmetric(a.size(), a.row_begin.data(), a.columns.data(),
-                      a.blocks.data(), d_.data(), q_.data());
-  }
 }
 
 }  // namespace splitfusion

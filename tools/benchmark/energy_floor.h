@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/lib/energy/block_matrix.h"
+
 namespace splitfusion {
 
 /// Numbers, aligned for wide vectors.
@@ -45,8 +47,10 @@ struct FloorMatrix {
 /// residual is evaluated, no cost, no trial step.
 class EnergyFloor {
  public:
-  /// `points`: n = 6; `edges`: n = 2. Places the blocks.
-  EnergyFloor(int nodes, FloorRows points, FloorRows edges);
+  /// `pattern`: a matrix with the blocks that the rows have; `points`: n = 6;
+  /// `edges`: n = 2. Places the blocks.
+  EnergyFloor(const SymmetricBlockMatrix& pattern, FloorRows points,
+              FloorRows edges);
 
   /// Sums the rows to J^T J and J^T r; a share of the groups a thread.
   void Assemble();
@@ -55,8 +59,6 @@ class EnergyFloor {
   /// Preconditioned conjugate gradients, the inverse diagonal blocks before
   /// them; returns the number of products.
   int Solve(double tolerance, int max_iterations);
-  /// So many products with the matrix.
-  void Multiply(int count);
 
   /// Sums of the last Assemble(), damped by Damp().
   const FloorMatrix& matrix() const { return shares_[0]; }
@@ -64,7 +66,6 @@ class EnergyFloor {
   const FloorArray& solution() const { return x_; }
 
  private:
-  void MakePattern(int nodes);
   void PlaceBlocks(FloorRows* rows) const;
 
   FloorRows points_;

@@ -18,15 +18,12 @@ class MeasuredEnergy {
 
   /// The scene.
   const EnergyScene& scene() const { return scene_; }
-  /// What the library makes of it.
-  const MeasuredSystem& system() const { return system_; }
   /// The floor with the iteration's Jacobians.
   const EnergyFloor& floor() const { return floor_; }
 
   /// Empty if blocks and gradient of the floor are the library's to 1e-6, the
-  /// step with block Jacobi as well in the same number of iterations, the
-  /// default step solves the system as well as asked for, and one plain Ceres
-  /// problem comes to the same cost; else what is not.
+  /// step with block Jacobi as well in the same number of iterations, and one
+  /// plain Ceres problem comes to the same cost; else what is not.
   const std::string& disagreement() const { return disagreement_; }
 
   /// Does the barest iteration; returns the products of its solver.

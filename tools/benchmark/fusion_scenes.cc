@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "labelled_view.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
 #include "splitfusion/lib/model/observe_surface.h"
 
@@ -32,6 +31,24 @@ SyntheticOptions WalkingPersonOptions() {
   return options;
 }
 
+/// 5 mm voxels, with a truncation in voxels.
+TsdfOptions FineVoxels(int truncation, bool has_color) {
+  TsdfOptions options;
+  options.voxel_size = 0.005;
+  options.truncation = truncation * options.voxel_size;
+  options.has_color = has_color;
+  return options;
+}
+
+/// What a frame of a scene shows, labelled exactly.
+LiveView LabelledView(const SyntheticScene& scene, int frame) {
+  const SyntheticFrame rendered = scene.Render(frame);
+  LiveView live =
+      MakeLiveView(scene.camera(), rendered.frame.depth, rendered.frame.color);
+  rendered.labels.convertTo(live.labels, CV_16U);
+  return live;
+}
+
 /// Every point is where it belongs: the person stands still.
 void SetPlaces(const LiveView& live, int surface, DepthObservation* observed) {
   const float nowhere = std::numeric_limits<float>::quiet_NaN();
@@ -48,12 +65,13 @@ void SetPlaces(const LiveView& live, int surface, DepthObservation* observed) {
 
 }  // namespace
 
-TsdfOptions FineVoxels(int truncation, bool has_color) {
-  TsdfOptions options;
-  options.voxel_size = 0.005;
-  options.truncation = truncation * options.voxel_size;
-  options.has_color = has_color;
-  return options;
+std::vector<MaskedFrame> FilmScene(const SyntheticScene& scene, int count) {
+  std::vector<MaskedFrame> film;
+  for (int i = 0; i < count; ++i) {
+    const SyntheticFrame rendered = scene.Render(i);
+    film.push_back({rendered.frame, scene.Detections(rendered)});
+  }
+  return film;
 }
 
 RoomModel::RoomModel(const TsdfOptions& options) : volume(options) {
@@ -97,10 +115,9 @@ PersonModel::PersonModel()
   }
   AllocateBand(observations[0], Rigid3d::Identity(), &volume);
   IntegrateRigid(observations[0], Rigid3d::Identity(), &volume);
-  mesh = ExtractMesh(volume, 1e-3);
   GraphOptions options;
   graph.node_spacing = 0.04;
-  GrowGraph(mesh, options, &graph, nullptr);
+  GrowGraph(ExtractMesh(volume, 1e-3), options, &graph, nullptr);
   index = std::make_unique<SkinningIndex>(graph, options.neighbors_per_point);
   AllocateAround(graph.positions,
                  graph.node_spacing + volume.options().truncation, &volume);

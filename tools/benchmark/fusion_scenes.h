@@ -4,11 +4,12 @@
 #include <tbb/global_control.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
-#include "masked_frames.h"
-#include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/frame/live_view.h"
+#include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 #include "splitfusion/lib/tsdf/warped_integration.h"
@@ -32,9 +33,6 @@ struct RoomModel {
   Rigid3d camera_from_canonical;  ///< Of that frame.
 };
 
-/// 5 mm voxels, with a truncation in voxels.
-TsdfOptions FineVoxels(int truncation, bool has_color);
-
 /// The room in 5 mm voxels with a truncation of 4, made when first asked for.
 RoomModel& FineRoom(bool has_color);
 
@@ -49,7 +47,6 @@ struct PersonModel {
   SyntheticScene scene;
   std::vector<DepthObservation> observations;  ///< Of two more frames.
   TsdfVolume volume;                           ///< Frames fused so far.
-  TriangleMesh mesh;                           ///< Canonical.
   DeformationGraph graph;                ///< Camera frame = canonical frame.
   std::unique_ptr<SkinningIndex> index;  ///< Of the graph.
   WarpedIntegrator integrator;           ///< Of the graph.
@@ -57,6 +54,30 @@ struct PersonModel {
 
   /// Fuses one of the observations.
   void Integrate(int observation);
+};
+
+/// A frame with its masks.
+struct MaskedFrame {
+  Frame frame;                      ///< Its index is its place in the film.
+  std::vector<InstanceMask> masks;  ///< Of that frame.
+};
+
+/// The first frames of a scene with the masks that its detector gives.
+std::vector<MaskedFrame> FilmScene(const SyntheticScene& scene, int count);
+
+/// Hands out the masks of a film.
+class GivenMasks : public Segmenter {
+ public:
+  /// Only of these frames.
+  explicit GivenMasks(std::vector<MaskedFrame> film) : film_(std::move(film)) {}
+
+  /// The masks that the frame has by its index.
+  std::vector<InstanceMask> Segment(const Frame& frame) override {
+    return film_.at(frame.index).masks;
+  }
+
+ private:
+  const std::vector<MaskedFrame> film_;
 };
 
 /// Room, walking person and toy after some frames of the whole method with its

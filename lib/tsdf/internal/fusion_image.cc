@@ -24,6 +24,25 @@ float Dither(int time, int z) {
       std::min(phase - std::floor(phase), 0.999));  // Maths.
 }
 
+/// Pixels along one axis; none if the last is before the first.
+struct Range {
+  int first, last;
+};
+
+/// Pixels that a box in front of the camera reaches along one axis.
+Range PixelsOf(const Eigen::AlignedBox3f& box, int axis, float focal,
+               float center, int size) {
+  constexpr float kMargin = 1;  // Rounding to pixels, and of floats.
+  const float near = focal / box.min().z(), far = focal / box.max().z();
+  const float low = box.min()[axis], high = box.max()[axis];
+  const float begin = std::min(low * near, low * far) + center - kMargin;
+  const float end = std::max(high * near, high * far) + center + kMargin;
+  const auto last = static_cast<float>(size - 1);
+  if (!(end >= 0 && begin <= last)) return {0, -1};
+  return {static_cast<int>(std::max(begin, 0.0f)),
+          static_cast<int>(std::min(end, last))};
+}
+
 }  // namespace
 
 FusionImage::FusionImage(const DepthObservation& observation,
@@ -53,7 +72,7 @@ FusionImage::FusionImage(const DepthObservation& observation,
            truncation_,
            static_cast<float>(options.max_weight),
            static_cast<float>(options.max_free_weight)};
-  for (int i = 0; i < 16; ++i) view_.dither[i] = Dither(time, i % 8);
+  for (int z = 0; z < 8; ++z) view_.dither[z] = Dither(time, z);
   tbb::parallel_for(0, rows_,
                     [&](int tile_row) { FillTiles(observation, tile_row); });
 }
@@ -77,53 +96,20 @@ void FusionImage::FillTiles(const DepthObservation& observation, int tile_row) {
   }
 }
 
-FusedPart FusionImage::MayChange(const ImageBox& box) const {
-  if (!box.in_front) return {kInfinity, false};
-  constexpr float kPixelMargin = 1;      // Maths: pixels, of rounding to them.
-  constexpr float kDepthMargin = 1e-3f;  // Maths: metres; rounding.
-  const float u_low = box.u_low - kPixelMargin;
-  const float v_low = box.v_low - kPixelMargin;
-  const float u_high = box.u_high + kPixelMargin;
-  const float v_high = box.v_high + kPixelMargin;
-  if (!(u_high >= 0 && v_high >= 0 && u_low < static_cast<float>(view_.width) &&
-        v_low < static_cast<float>(view_.height))) {
-    return {-kInfinity, false};
-  }
-  const auto tile = [](float pixel, int count) {
-    const float clamped =
-        std::clamp(pixel, 0.0f, static_cast<float>(count * kTile - 1));
-    return static_cast<int>(clamped) / kTile;
-  };
-  const int u_end = tile(u_high, columns_);
-  const int v_end = tile(v_high, rows_);
+float FusionImage::Farthest(const Eigen::AlignedBox3f& box) const {
+  constexpr float kDepthMargin = 1e-3f;  // Metres; rounding.
+  if (!(box.max().z() > kNear)) return -kInfinity;
+  if (!(box.min().z() > kNear)) return kInfinity;
+  const Range u = PixelsOf(box, 0, view_.fx, view_.cx, view_.width);
+  const Range v = PixelsOf(box, 1, view_.fy, view_.cy, view_.height);
+  if (u.last < u.first || v.last < v.first) return -kInfinity;
   float farthest = -kInfinity;
-  for (int v = tile(v_low, rows_); v <= v_end; ++v) {
-    for (int u = tile(u_low, columns_); u <= u_end; ++u) {
-      farthest = std::max(farthest, reach_[v * columns_ + u]);
+  for (int row = v.first / kTile; row <= v.last / kTile; ++row) {
+    for (int column = u.first / kTile; column <= u.last / kTile; ++column) {
+      farthest = std::max(farthest, reach_[row * columns_ + column]);
     }
   }
-  const bool in_image = u_low >= 0 && v_low >= 0 &&
-                        u_high <= static_cast<float>(view_.width - 1) &&
-                        v_high <= static_cast<float>(view_.height - 1);
-  return {farthest + kDepthMargin, in_image};
-}
-
-void FusionImage::Prefetch(const ImageBox& box) const {
-  constexpr int kLine = 64 / sizeof(FusionPixel);
-  const auto inside = [](float pixel, int end) {
-    return static_cast<int>(
-        std::clamp(pixel, 0.0f, static_cast<float>(end - 1)));
-  };
-  const int u_low = inside(box.u_low, view_.width);
-  const int u_high = inside(box.u_high, view_.width);
-  const int v_high = inside(box.v_high, view_.height);
-  for (int v = inside(box.v_low, view_.height); v <= v_high; ++v) {
-    const FusionPixel* row =
-        &pixels_[static_cast<std::size_t>(v) * view_.width];
-    for (int u = u_low; u < u_high + kLine; u += kLine) {
-      __builtin_prefetch(row + u);
-    }
-  }
+  return farthest + kDepthMargin;
 }
 
 }  // namespace internal

@@ -1,11 +1,11 @@
 #ifndef SPLITFUSION_LIB_TSDF_INTERNAL_FUSION_IMAGE_H_
 #define SPLITFUSION_LIB_TSDF_INTERNAL_FUSION_IMAGE_H_
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "splitfusion/lib/tsdf/internal/image_box.h"
 #include "splitfusion/lib/tsdf/internal/voxel_fusion.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 
@@ -24,15 +24,12 @@ class FusionImage {
   /// The view points into it.
   FusionImage& operator=(const FusionImage&) = delete;
 
-  /// For FuseRigidBlocks() and FuseWarpedLeaf().
+  /// For FuseRigidLeaf() and FuseWarpedLeaf().
   const FusionView& view() const { return view_; }
 
-  /// What of the voxels within a box can be changed: rather too much than not
-  /// enough, and none that is not nearer than `farthest`.
-  FusedPart MayChange(const ImageBox& box) const;
-
-  /// Asks the memory for the pixels within a box that is in front.
-  void Prefetch(const ImageBox& box) const;
+  /// Z-depth (metres) from which on no voxel within a box of the camera frame
+  /// can be changed: rather too much than not enough.
+  float Farthest(const Eigen::AlignedBox3f& box) const;
 
  private:
   static constexpr int kTile = 8;  // Pixels.

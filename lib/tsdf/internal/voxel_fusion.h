@@ -9,7 +9,7 @@ namespace internal {
 /// What one pixel does to the voxels on its ray.
 struct FusionPixel {
   float depth;   ///< Metres; - infinity: it changes nothing.
-  float weight;  ///< Confidence; with a minus (-0, too) it only carves.
+  float weight;  ///< Confidence; negative: it only carves.
 };
 
 /// An observation, for loops that are free of Eigen and OpenCV.
@@ -19,9 +19,9 @@ struct FusionView {
   const std::int32_t* color;
   int width, height;
   float fx, fy, cx, cy;
-  /// What is added before colours are cut to integers, by z, twice; 0..1, and
+  /// What is added before colours are cut to integers, by z; 0..1, and
   /// different in every integration.
-  float dither[16];
+  float dither[8];
   float truncation;  ///< Metres.
   float max_weight, max_free_weight;
 };
@@ -34,32 +34,26 @@ struct FusedLeaf {
   std::int32_t* color;
 };
 
+/// What is nearer to the camera is not seen, metres.
+constexpr float kNear = 0.05f;
+
 /// No mesh asks whether a voxel has been observed more than this.
 constexpr float kFirmWeight = 8;  // Speed.
-
-/// What of a block may change.
-struct FusedPart {
-  float farthest;  ///< Nothing that is farther away: z-depth, metres.
-  bool in_image;   ///< All of its voxels fall into the image.
-};
 
 /// A block that is carried rigidly, whose voxel (x, y, z) is at
 ///   base + x steps[0] + y steps[1] + z steps[2]
 /// (camera frame, metres).
-struct RigidBlock {
+struct RigidLeaf {
   float base[3];
-  FusedPart part;
+  float farthest;  ///< Nothing farther away may change: z-depth, metres.
   FusedLeaf leaf;
-  /// Whether a mesh may show it: a distance, a colour, or a weight below
-  /// kFirmWeight is another one.
-  bool changed = false;
-  bool has_inside = false;  ///< HasInside(), if it changed.
 };
 
-/// Fuses into blocks one after the other; sets `changed` and
-/// `has_inside`.
-void FuseRigidBlocks(const FusionView& view, const float steps[3][3],
-                     RigidBlock* blocks, int count);
+/// Fuses into a block; `next`: the one that comes after it, which the memory is
+/// asked for. Returns whether a mesh may show it: a distance, a colour, or a
+/// weight below kFirmWeight is another one.
+bool FuseRigidLeaf(const FusionView& view, const float steps[3][3],
+                   const RigidLeaf& rigid, const FusedLeaf& next);
 
 /// Points of a block that are warped: every fourth voxel, 3 x 3 x 3.
 constexpr int kLatticePoints = 27;
@@ -69,7 +63,7 @@ constexpr int kLatticeCells = 8;
 /// Fuses into a block whose every fourth voxel is at `lattice` (camera frame,
 /// metres; z varies fastest), and whose others are interpolated. Into cells
 /// marked as `foreign` (z varies fastest) only free space is fused. Returns
-/// RigidBlock::changed.
+/// the same as FuseRigidLeaf().
 bool FuseWarpedLeaf(const FusionView& view,
                     const float lattice[kLatticePoints][3],
                     const bool foreign[kLatticeCells], const FusedLeaf& leaf);
