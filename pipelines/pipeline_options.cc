@@ -42,9 +42,9 @@ void PipelineOptions::List(OptionList* list) {
       .common = true;
   list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
                "of the image", "A surface is modelled once it covers as much.");
-  list->Number("max_lost_young", &max_lost_young, Range::AtLeast(1), "frames",
-               "A surface that is lost in so many frames in a row, and was "
-               "tracked in no more, begins anew.");
+  list->Number("max_lost", &max_lost, Range::AtLeast(1), "frames",
+               "A surface in plain view that is lost in so many frames on end "
+               "is modelled anew, under the same id.");
   list->Part("", &graph);
   list->Part("background_", &background);
   list->Part("object_", &object);

@@ -44,9 +44,9 @@ struct PipelineOptions {
   double min_exposure = 0.25;
   /// Fraction of the image a surface has to cover before it is modelled.
   double min_birth_area = 0.008;
-  /// A surface that is lost in as many frames in a row, with no more frames
-  /// tracked than that, begins anew.
-  int max_lost_young = 5;
+  /// A surface in plain view that is lost in so many frames on end is modelled
+  /// anew, under the same id.
+  int max_lost = 3;
 
   PipelineOptions();
   /// Names, ranges and meaning of all fields.

@@ -43,7 +43,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
     TrackBackground(&report);
     TrackObjects(&report);
     Fuse(&report);
-    RestartLostSurfaces(&report);
+    ReanchorLostSurfaces(&report);
   }
   AddNewSurfaces(frame, &report);
   Record(frame, &report);
@@ -119,7 +119,7 @@ void SplitFusion::TrackObjects(FrameReport* report) {
   std::vector<SurfaceReport> objects = LookAtObjects();
   tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
     SurfaceReport& object = objects[i];
-    if (object.state.empty() && hidden_.count(object.id) == 0) {
+    if (object.state.empty() && !following_[object.id].hidden) {
       TrackObject(surfaces_.at(object.id).get(), &object);
     }
   });
@@ -157,11 +157,10 @@ bool SplitFusion::IsHidden(SurfaceReport* report) {
   const double exposure = Exposure(
       alone->second, kAloneStride * options_.render_stride, live_, report->id);
   constexpr double kBack = 1.2;  // More must be seen to come back.
-  const bool was_hidden = hidden_.count(report->id) > 0;
-  if (exposure >=
-      std::min(1.0, (was_hidden ? kBack : 1) * options_.min_exposure))
+  bool& hidden = following_[report->id].hidden;
+  if (exposure >= std::min(1.0, (hidden ? kBack : 1) * options_.min_exposure))
     return false;
-  hidden_.insert(report->id);
+  hidden = true;
   report->reason = std::to_string(static_cast<int>(100 * exposure)) +
                    " % of the model in view";
   return true;
@@ -196,17 +195,21 @@ void SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
 
 void SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
-  const bool was_hidden = hidden_.count(report->id) > 0;
-  if (!PlaceWhereSeen(surface, report) && !was_hidden) return;
-  TrackObject(surface, report);
-  if (report->state == "tracked") {
-    hidden_.erase(report->id);
-    return;
+  Following& following = following_[report->id];
+  if (PlaceWhereSeen(surface, report) || following.hidden) {
+    TrackObject(surface, report);
+    if (report->state == "tracked") {
+      following.hidden = false;
+      return;
+    }
+    *surface->mutable_graph() = before;
+    rendering_ =
+        RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
   }
-  if (was_hidden) report->state = "hidden";  // Too little to know where it is.
-  *surface->mutable_graph() = before;
-  rendering_ =
-      RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
+  if (!following.hidden) return;
+  // Too little of it may be in view to know where it is.
+  following.hidden = !InPlainView(*report);
+  report->state = following.hidden ? "hidden" : "lost";
 }
 
 void SplitFusion::Fuse(FrameReport* report) {
@@ -222,19 +225,30 @@ void SplitFusion::Fuse(FrameReport* report) {
   });
 }
 
-void SplitFusion::RestartLostSurfaces(FrameReport* report) {
-  for (SurfaceReport& lost : report->surfaces) {
-    int& on_end = lost_on_end_[lost.id];
-    on_end = lost.state == "lost" ? on_end + 1 : 0;
-    if (lost.id == 0 || on_end < options_.max_lost_young) continue;
-    int tracked = 0;
-    for (const FrameMotions& motions :
-         surfaces_.at(lost.id)->history().frames) {
-      tracked += motions.tracked;
+bool SplitFusion::InPlainView(const SurfaceReport& report) const {
+  constexpr double kUsual = 0.5;
+  const double least =
+      std::max(options_.min_birth_area * camera_.width * camera_.height,
+               kUsual * following_.at(report.id).usual_pixels);
+  return report.pixels >= least;
+}
+
+void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
+  for (SurfaceReport& object : report->surfaces) {
+    if (object.id == 0) continue;
+    Following& following = following_[object.id];
+    if (object.state == "tracked") {
+      const double share = following.usual_pixels > 0 ? 0.1 : 1;
+      following.usual_pixels +=
+          share * (object.pixels - following.usual_pixels);
     }
-    if (tracked > options_.max_lost_young) continue;
-    on_end = 0;
-    Drop(lost.id, "dropped", &lost);
+    const bool lost = object.state == "lost" && InPlainView(object);
+    following.lost_in_view = lost ? following.lost_in_view + 1 : 0;
+    if (following.lost_in_view < options_.max_lost) continue;
+    if (!surfaces_.at(object.id)->Reanchor(live_)) continue;
+    object.state = "reanchored";
+    following = {};
+    predictors_.erase(object.id);
   }
 }
 
@@ -246,7 +260,7 @@ void SplitFusion::Drop(int id, const std::string& state,
   report->state = state;
   surfaces_.erase(id);
   predictors_.erase(id);
-  hidden_.erase(id);
+  following_.erase(id);
 }
 
 void SplitFusion::FollowInstances(FrameReport* report) {
@@ -254,7 +268,8 @@ void SplitFusion::FollowInstances(FrameReport* report) {
     const auto found = surfaces_.find(id);
     if (found == surfaces_.end()) continue;
     const bool held = instance.held_by > 0;
-    if (held) hidden_.insert(id);  // Found where it is seen when released.
+    // Found where it is seen when released.
+    if (held) following_[id].hidden = true;
     found->second->set_dormant(instance.dormant || held);
     found->second->set_label(instance.class_name);
     if (instance.merged_into == 0) continue;
@@ -321,11 +336,12 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
     surface_report.node_spacing = surface.graph().node_spacing;
     surface_report.vertices = static_cast<int>(surface.mesh().vertices.size());
     const bool tracked = surface_report.state == "tracked";
-    surface.RecordMotions(
-        frame.index, tracked || surface_report.state == "born", recent_views_);
+    const bool begins =
+        surface_report.state == "born" || surface_report.state == "reanchored";
+    surface.RecordMotions(frame.index, tracked || begins, recent_views_);
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
-    const bool hidden = hidden_.count(id) > 0 && !surface.dormant();
+    const bool hidden = id != 0 && following_[id].hidden && !surface.dormant();
     predictors_[id].Record(placed, Center(surface.graph()),
                            tracked  ? Placement::kTracked
                            : hidden ? Placement::kHidden

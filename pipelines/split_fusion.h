@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -76,6 +75,18 @@ class SplitFusion {
   void Serialize(Archive* archive);
 
  private:
+  /// How a surface has fared.
+  struct Following {
+    bool hidden = false;      ///< Mostly occluded when last looked at.
+    int lost_in_view = 0;     ///< Frames on end: in plain view, not found.
+    double usual_pixels = 0;  ///< Running mean while it is tracked.
+
+    template <typename Archive>
+    void Serialize(Archive* archive) {
+      (*archive)(hidden, lost_in_view, usual_pixels);
+    }
+  };
+
   void PredictMotions();
   void Split(const PreparedFrame& prepared, FrameReport* report);
   void TrackBackground(FrameReport* report);
@@ -96,7 +107,9 @@ class SplitFusion {
   void TrackWhereSeen(Surface* surface, SurfaceReport* report);
   void Fuse(FrameReport* report);
   void FollowInstances(FrameReport* report);
-  void RestartLostSurfaces(FrameReport* report);
+  /// Whether the live pixels of a surface show about as much of it as usual.
+  bool InPlainView(const SurfaceReport& report) const;
+  void ReanchorLostSurfaces(FrameReport* report);
   void Drop(int id, const std::string& state, SurfaceReport* report);
   void AddNewSurfaces(const Frame& frame, FrameReport* report);
   void Record(const Frame& frame, FrameReport* report);
@@ -120,8 +133,7 @@ class SplitFusion {
   ModelMap background_map_;
   /// By surface; of the background in the camera frame, of others in world.
   std::map<int, MotionPredictor> predictors_;
-  std::set<int> hidden_;            ///< Surfaces that are mostly occluded.
-  std::map<int, int> lost_on_end_;  ///< Frames, by surface.
+  std::map<int, Following> following_;  ///< By surface, without the background.
 };
 
 }  // namespace splitfusion

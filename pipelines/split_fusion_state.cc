@@ -36,7 +36,7 @@ void SplitFusion::Serialize(Archive* archive) {
   archive->Section("split fusion");
   ExpectSameCamera(archive, camera_);
   (*archive)(splitter_, trajectory_, live_.labels, recent_views_, predictors_,
-             hidden_, lost_on_end_);
+             following_);
   SerializeSurfaces(archive);
 }
 

@@ -1,5 +1,7 @@
 #include "splitfusion/lib/deformation/deformation_graph.h"
 
+#include <algorithm>
+
 namespace splitfusion {
 
 DeformationGraph MakeRigidGraph(const Rigid3d& camera_from_canonical) {
@@ -43,6 +45,18 @@ Eigen::Vector3d Center(const DeformationGraph& graph) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& position : graph.positions) sum += position;
   return graph.positions.empty() ? sum : sum / graph.size();
+}
+
+NodeRange DeformationGraph::NodesInUse(int frame) const {
+  NodeRange range{0, size()};
+  for (std::size_t i = 1; i < models.size(); ++i) {
+    if (models[i].frame <= frame) {
+      range.begin = models[i].node;
+    } else {
+      range.end = std::min(range.end, models[i].node);
+    }
+  }
+  return range;
 }
 
 }  // namespace splitfusion

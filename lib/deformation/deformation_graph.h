@@ -21,6 +21,22 @@ struct NodeMotion {
   }
 };
 
+/// Where one model of a surface begins that was re-anchored: its first node and
+/// the first frame in which it is in use.
+struct ModelStart {
+  int node = 0;   ///< Index of the first node.
+  int frame = 0;  ///< Index of the first frame.
+};
+
+/// A range of nodes, the last one excluded.
+struct NodeRange {
+  int begin = 0;  ///< Index of the first node.
+  int end = 0;    ///< Index behind the last node.
+
+  /// Whether a node is among them.
+  bool Contains(int node) const { return node >= begin && node < end; }
+};
+
 /// The embedded deformation graph of one surface (SplitFusion IV-B).
 ///
 /// A rigid surface is the graph with one node at the canonical origin: its
@@ -36,6 +52,9 @@ struct DeformationGraph {
   /// known of all of them, it is of none, and all counts as seen from the
   /// start.
   std::vector<int> first_seen;
+  /// Models of a surface that was re-anchored, ascending; they have no nodes or
+  /// frames in common. Empty: one model.
+  std::vector<ModelStart> models;
   /// How far the last association told where each node is, 0 to 1, see
   /// SeenShares(); nodes beyond its end are newer.
   std::vector<double> seen;
@@ -50,7 +69,11 @@ struct DeformationGraph {
   /// Whether one motion carries the whole surface.
   bool rigid() const { return positions.size() == 1; }
 
-  /// Saves or restores it, see lib/base/archive.h.
+  /// Nodes of the model that is in use in a frame.
+  NodeRange NodesInUse(int frame) const;
+
+  /// Saves or restores it, see lib/base/archive.h; not `models`, which only
+  /// joined models have.
   template <typename Archive>
   void Serialize(Archive* archive) {
     (*archive)(positions, motions, neighbors, node_spacing, first_seen, seen,

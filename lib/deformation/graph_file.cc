@@ -80,6 +80,25 @@ std::vector<int> FirstSeen(const std::string& path, const Json& json,
   return Frames(path, "first_seen", json);
 }
 
+/// Models that begin at ascending nodes and frames: [[node, frame], ...].
+std::vector<ModelStart> Models(const std::string& path, const Json& json,
+                               int nodes) {
+  std::vector<ModelStart> models;
+  bool ascending = json.is_array();
+  for (const Json& item : json) {
+    const std::vector<int> start =
+        item.is_array() ? Frames(path, "models", item) : std::vector<int>();
+    ascending = ascending && start.size() == 2 && start[0] < nodes &&
+                (models.empty() || (models.back().node < start[0] &&
+                                    models.back().frame < start[1]));
+    if (!ascending) break;
+    models.push_back({start[0], start[1]});
+  }
+  if (ascending && (models.empty() || models.front().node == 0)) return models;
+  throw InputError(path + ": field 'models': " + BriefJson(json) +
+                   ": expected first nodes and frames, ascending, from node 0");
+}
+
 /// A field, not a copy of it: copies are made as deep as the value is, which
 /// may be too deep for the stack.
 const Json& FieldOr(const Json& json, const char* field, const Json& missing) {
@@ -108,6 +127,7 @@ DeformationGraph ParseGraph(const std::string& path, const Json& json) {
   const Json none = Json::array();
   graph.first_seen = FirstSeen(path, FieldOr(json, "first_seen", none),
                                graph.positions.size());
+  graph.models = Models(path, FieldOr(json, "models", none), graph.size());
   return graph;
 }
 
@@ -128,11 +148,16 @@ void WriteGraph(const std::string& path, const DeformationGraph& graph,
   for (const Eigen::Vector3d& g : graph.positions) {
     positions.push_back({g.x(), g.y(), g.z()});
   }
+  Json models = Json::array();
+  for (const ModelStart& start : graph.models) {
+    models.push_back({start.node, start.frame});
+  }
   const Json json = {{"node_spacing", graph.node_spacing},
                      {"neighbors_per_point", neighbors_per_point},
                      {"positions", positions},
                      {"edges", graph.neighbors},
-                     {"first_seen", graph.first_seen}};
+                     {"first_seen", graph.first_seen},
+                     {"models", models}};
   WriteFileAtomically(path, [&](std::ostream& out) { out << json << '\n'; });
 }
 

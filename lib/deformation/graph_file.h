@@ -8,7 +8,8 @@
 namespace splitfusion {
 
 /// Writes `graph.json`: {"node_spacing", "neighbors_per_point", "positions":
-/// [[x, y, z], ...], "edges": [[j, ...], ...], "first_seen": [frame, ...]};
+/// [[x, y, z], ...], "edges": [[j, ...], ...], "first_seen": [frame, ...],
+/// "models": [[first node, first frame], ...]};
 /// positions canonical, metres; edges[i] are the neighbours of node i. Motions
 /// are in motions.bin.
 ///
@@ -17,7 +18,7 @@ void WriteGraph(const std::string& path, const DeformationGraph& graph,
                 int neighbors_per_point);
 
 /// Reads what WriteGraph wrote; motions are identity. `neighbors_per_point`
-/// may be null. "first_seen" may be missing or empty.
+/// may be null. "first_seen" and "models" may be missing or empty.
 ///
 /// @throw InputError on a missing or malformed file; names the field.
 DeformationGraph ReadGraph(const std::string& path, int* neighbors_per_point);

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "splitfusion/lib/visibility/seen_triangles.h"
@@ -27,6 +28,14 @@ int AnimatedSurface::FirstFrame() const {
   return frames.empty() ? -1 : frames.front().frame;
 }
 
+bool AnimatedSurface::BeginsIn(int frame) const {
+  const std::vector<ModelStart>& models = surface_.graph.models;
+  return FirstFrame() == frame || std::any_of(models.begin(), models.end(),
+                                              [frame](const ModelStart& start) {
+                                                return start.frame == frame;
+                                              });
+}
+
 WarpField AnimatedSurface::WarpAt(int frame) const {
   DeformationGraph graph = surface_.graph;
   graph.motions = surface_.motions.Find(frame)->motions;
@@ -44,6 +53,15 @@ std::vector<Eigen::Vector3f> AnimatedSurface::VerticesAt(int frame) const {
 
 std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesAt(int frame) const {
   return SeenTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
+}
+
+std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesInUse(int frame) const {
+  const NodeRange in_use = surface_.graph.NodesInUse(frame);
+  std::vector<Eigen::Vector3i> triangles;
+  for (const Eigen::Vector3i& t : surface_.mesh.triangles) {
+    if (in_use.Contains(skinnings_[t[0]].nodes[0])) triangles.push_back(t);
+  }
+  return triangles;
 }
 
 TriangleMesh AnimatedSurface::MeshAt(int frame) const {

@@ -68,7 +68,7 @@ class Follower {
     std::vector<const AnimatedSurface*> present;
     for (const AnimatedSurface& surface : surfaces_) {
       if (surface.HasMotions(frame.index) &&
-          (!only_newborn || surface.FirstFrame() == frame.index)) {
+          (!only_newborn || surface.BeginsIn(frame.index))) {
         present.push_back(&surface);
       }
     }
@@ -102,6 +102,10 @@ class Follower {
       }
     }
     for (FollowedPoint& point : points_) {
+      // A model that is not in use any more says nothing of the frame.
+      if (point.attachment && !IsInUse(*point.attachment, to.index)) {
+        point.attachment.reset();
+      }
       const auto warp =
           point.attachment
               ? warps.find(point.attachment->surface->recorded().id)
@@ -115,6 +119,11 @@ class Follower {
   const std::vector<FollowedPoint>& points() const { return points_; }
 
  private:
+  static bool IsInUse(const Attachment& attachment, int frame) {
+    return attachment.surface->recorded().graph.NodesInUse(frame).Contains(
+        attachment.skinning.nodes[0]);
+  }
+
   const RecordedRun& run_;
   const std::vector<AnimatedSurface>& surfaces_;
   AttachmentOptions options_;

@@ -44,7 +44,7 @@ SurfaceAttacher::SurfaceAttacher(
   for (const AnimatedSurface* surface : surfaces) {
     const std::vector<Eigen::Vector3f> vertices = surface->VerticesAt(frame);
     std::vector<Eigen::Vector3i> facing =
-        FacingTriangles(vertices, surface->recorded().mesh.triangles);
+        FacingTriangles(vertices, surface->TrianglesInUse(frame));
     TriangleTree tree(vertices, facing);
     candidates_.push_back(
         {surface, surface->WarpAt(frame), std::move(facing), std::move(tree)});

@@ -111,6 +111,26 @@ bool Surface::Initialize(const LiveView& live) {
   return true;
 }
 
+bool Surface::Reanchor(const LiveView& live) {
+  Surface anew(id_, label_, kind_, first_frame_, options_, graph_options_);
+  if (!anew.Initialize(live)) return false;
+  FinishMesh();
+  anew.retired_ = std::move(retired_);
+  anew.retired_.push_back(
+      {std::move(mesh_), std::move(graph_), std::move(history_)});
+  *this = std::move(anew);
+  return true;
+}
+
+SurfaceModel Surface::Model() const {
+  const SurfaceModel last{mesh_, graph_, history_};
+  std::vector<const SurfaceModel*> models;
+  for (const SurfaceModel& model : retired_) models.push_back(&model);
+  // One that has no frame yet has nothing to show.
+  if (!history_.frames.empty() || models.empty()) models.push_back(&last);
+  return JoinModels(models);
+}
+
 void Surface::PlaceGraph(const LiveView& live) {
   if (kind_ == SurfaceKind::kRigid) {
     graph_ = MakeRigidGraph(Rigid3d::Identity());

@@ -12,6 +12,7 @@
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/model/surface_model.h"
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/tsdf/mesh_extractor.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
@@ -60,6 +61,12 @@ class Surface {
   /// First observation: fills the volume in the camera frame and places the
   /// graph. Returns whether there is a surface to speak of.
   bool Initialize(const LiveView& live);
+
+  /// Begins the model anew from the live pixels of this surface, in the camera
+  /// frame; the one so far is kept for the frames so far. For a surface that is
+  /// in view and that its model cannot be found in any more. Returns whether
+  /// there is anything to begin with; otherwise nothing changes.
+  bool Reanchor(const LiveView& live);
 
   /// Fuses the live pixels of this surface under the current motions.
   void Fuse(const LiveView& live);
@@ -120,8 +127,10 @@ class Surface {
   const std::vector<Skinning>& mesh_skinning() const {
     return mesh_skinning_.skinning();
   }
-  /// Motions of all frames so far.
+  /// Motions of all frames since its model began.
   const MotionHistory& history() const { return history_; }
+  /// Mesh, graph and motions of all its models.
+  SurfaceModel Model() const;
 
   /// Saves or restores all that later frames depend on, see
   /// lib/base/archive.h; of a surface made with the same arguments but for the
@@ -159,7 +168,8 @@ class Surface {
   TriangleMesh mesh_;
   MeshSkinning mesh_skinning_;
   MotionHistory history_;
-  std::vector<int> last_seen_;  // Place in history_.frames, by node.
+  std::vector<SurfaceModel> retired_;  // What it was before Reanchor().
+  std::vector<int> last_seen_;         // Place in history_.frames, by node.
 };
 
 }  // namespace splitfusion

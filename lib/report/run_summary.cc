@@ -14,6 +14,10 @@ bool AnyIs(const char* state, const FrameReport& report) {
                      [&](const auto& s) { return s.state == state; });
 }
 
+bool IsShown(const std::string& state) {
+  return state == "tracked" || state == "born" || state == "reanchored";
+}
+
 bool IsAway(const std::string& state) {
   return state == "lost" || state == "hidden" || state == "unseen";
 }
@@ -58,6 +62,7 @@ Json ToJson(const SurfaceSummary& surface) {
           {"occluded_frames", surface.hidden.size()},
           {"refound_frames", surface.refound.size()},
           {"refound", surface.refound},
+          {"reanchored", surface.reanchored},
           {"away_since",
            surface.away_since >= 0 ? Json(surface.away_since) : Json()}};
 }
@@ -134,16 +139,17 @@ bool SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   surface.id = report.id;
   surface.label = report.label;
   surface.kind = report.kind;
-  if (report.state == "tracked" || report.state == "born") ++surface.frames;
+  if (IsShown(report.state)) ++surface.frames;
   if (report.state == "lost") surface.lost.push_back(frame);
   if (report.state == "hidden") surface.hidden.push_back(frame);
   const std::string before = last_states_[report.id];
   last_states_[report.id] = report.state;
-  const bool refound = report.state == "tracked" && IsAway(before);
+  const bool refound = IsShown(report.state) && IsAway(before);
   if (refound) surface.refound.push_back(frame);
   const bool gone = report.state == "lost" || report.state == "hidden";
   if (gone && surface.away_since < 0) surface.away_since = frame;
-  if (report.state == "tracked") surface.away_since = -1;
+  if (IsShown(report.state)) surface.away_since = -1;
+  if (report.state == "reanchored") surface.reanchored.push_back(frame);
   if (report.nodes > 0) {
     surface.nodes = report.nodes;
     surface.node_spacing = report.node_spacing;

@@ -28,6 +28,7 @@ struct SurfaceSummary {
   /// Frames in which it was tracked again after it had been lost, hidden or out
   /// of view.
   std::vector<int> refound;
+  std::vector<int> reanchored;  ///< Frames in which its model began anew.
   /// The frame in which it was lost or hidden and after which it was not
   /// tracked again to the end of the run; -1 = it was.
   int away_since = -1;
@@ -36,7 +37,7 @@ struct SurfaceSummary {
   template <typename Archive>
   void Serialize(Archive* archive) {
     (*archive)(id, label, kind, first_frame, frames, nodes, node_spacing,
-               vertices, lost, hidden, refound, away_since);
+               vertices, lost, hidden, refound, reanchored, away_since);
   }
 };
 

@@ -11,20 +11,20 @@ namespace {
 
 /// The final mesh under the motions of one frame, camera frame; `whole`: with
 /// what was seen only later.
-TriangleMesh WarpMesh(const Surface& surface, const FrameMotions& motions,
-                      bool whole) {
-  DeformationGraph graph = surface.graph();
+TriangleMesh WarpMesh(const SurfaceModel& model,
+                      const std::vector<Skinning>& skinning,
+                      const FrameMotions& motions, bool whole) {
+  DeformationGraph graph = model.graph;
   graph.motions = motions.motions;
   const WarpField warp(graph);
-  TriangleMesh mesh = surface.mesh();
+  TriangleMesh mesh = model.mesh;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Skinning& skinning = surface.mesh_skinning()[i];
-    mesh.vertices[i] = warp.WarpPoint(skinning, mesh.vertices[i]);
-    mesh.normals[i] = warp.WarpNormal(skinning, mesh.normals[i]);
+    mesh.vertices[i] = warp.WarpPoint(skinning[i], mesh.vertices[i]);
+    mesh.normals[i] = warp.WarpNormal(skinning[i], mesh.normals[i]);
   }
   if (!whole) {
-    mesh.triangles = SeenTriangles(surface.mesh(), surface.mesh_skinning(),
-                                   surface.graph(), motions.frame);
+    mesh.triangles =
+        SeenTriangles(model.mesh, skinning, model.graph, motions.frame);
   }
   return mesh;
 }
@@ -37,16 +37,19 @@ void WriteSurface(const RunPaths& paths, const Surface& surface,
   std::error_code ignored;  // Files that cannot be written say so.
   std::filesystem::create_directory(std::filesystem::path(folder).parent_path(),
                                     ignored);
-  WritePly(folder + "/mesh.ply", surface.mesh());
+  const SurfaceModel model = surface.Model();
+  WritePly(folder + "/mesh.ply", model.mesh);
   surface.volume().Write(folder + "/tsdf.vdb");
-  WriteGraph(folder + "/graph.json", surface.graph(),
-             surface.graph_options().neighbors_per_point);
-  WriteMotions(folder + "/motions.bin", surface.history());
+  const int neighbors = surface.graph_options().neighbors_per_point;
+  WriteGraph(folder + "/graph.json", model.graph, neighbors);
+  WriteMotions(folder + "/motions.bin", model.history);
   if (surface.is_ray_cast() || warped.every <= 0) return;
-  for (const FrameMotions& motions : surface.history().frames) {
+  const std::vector<Skinning> skinning =
+      SkinningIndex(model.graph, neighbors).Skin(model.mesh.vertices);
+  for (const FrameMotions& motions : model.history.frames) {
     if (motions.frame % warped.every != 0) continue;
     WritePly(paths.WarpedMesh(surface.id(), surface.label(), motions.frame),
-             WarpMesh(surface, motions, warped.whole));
+             WarpMesh(model, skinning, motions, warped.whole));
   }
 }
 

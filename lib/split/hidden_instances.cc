@@ -37,7 +37,7 @@ void RecognizeHidden(const std::vector<Candidate>& candidates,
     if (hidden.empty()) continue;
     match.surface = registry.FindAlike(
         ComputeAppearance(work.frame.color, work.points, candidate.mask),
-        table.Kind(candidate.class_name), hidden);
+        table.Kind(candidate.class_name), hidden, work.frame.index);
     unmatched.erase(match.surface);
   }
 }

@@ -97,7 +97,7 @@ class InstanceRegistry {
   /// The instance of this kind, of these `ids`, that looks most like
   /// `appearance`; 0 if none is alike.
   int FindAlike(const Appearance& appearance, SurfaceKind kind,
-                const std::set<int>& ids) const;
+                const std::set<int>& ids, int frame) const;
 
   /// Ids that detections may be matched to: all but merged ones.
   std::set<int> Matchable() const;

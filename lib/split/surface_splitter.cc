@@ -280,7 +280,7 @@ int SurfaceSplitter::FindKnown(const Segment& segment,
                                const SplitWork& work) const {
   return registry_.FindAlike(
       ComputeAppearance(work.frame.color, work.points, pixels),
-      table_.Kind(segment.class_name), registry_.Dormant());
+      table_.Kind(segment.class_name), registry_.Dormant(), work.frame.index);
 }
 
 void SurfaceSplitter::AddSurface(int known, Segment* segment, SplitWork* work) {

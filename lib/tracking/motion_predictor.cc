@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace splitfusion {
@@ -9,6 +10,9 @@ namespace {
 
 /// Tracked frames whose steps are remembered.
 constexpr std::size_t kSteps = 10;
+
+/// Frames after which an unseen surface has slowed down to 1/e: half a second.
+constexpr double kRestFrames = 15;
 
 /// The motion of one frame, if `motion` took several: a part of the turn, and
 /// of the way of `center` (where the motion began).
@@ -34,6 +38,7 @@ void MotionPredictor::Record(const Rigid3d& world_from_canonical,
   const bool born = !begun_;
   begun_ = true;
   if (placement == Placement::kHidden) known_.reset();
+  hidden_frames_ = placement == Placement::kHidden ? hidden_frames_ + 1 : 0;
   if (placement != Placement::kTracked && !born) return;
   known_ = world_from_canonical;
   frames_since_ = 0;
@@ -66,6 +71,7 @@ Rigid3d MotionPredictor::UsualStep() const {
     std::nth_element(values.begin(), middle, values.end());
     step.translation()[axis] = *middle;
   }
+  step.translation() *= std::exp(-hidden_frames_ / kRestFrames);
   return step;
 }
 

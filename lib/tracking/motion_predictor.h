@@ -36,7 +36,7 @@ class MotionPredictor {
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(known_, frames_since_, begun_, velocity_, steps_);
+    (*archive)(known_, frames_since_, hidden_frames_, begun_, velocity_, steps_);
   }
 
  private:
@@ -48,6 +48,7 @@ class MotionPredictor {
   // carried on without.
   std::optional<Rigid3d> known_;
   int frames_since_ = 0;  // Since it was placed there.
+  int hidden_frames_ = 0;  // On end.
   bool begun_ = false;    // Whether any frame was recorded.
   Rigid3d velocity_ = Rigid3d::Identity();
   std::deque<Eigen::Vector3d> steps_;  // Of the centre, world, metres.

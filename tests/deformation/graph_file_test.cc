@@ -53,6 +53,27 @@ TEST(Graph, KeepsFirstSights) {
   EXPECT_EQ(read.first_seen, graph.first_seen);
 }
 
+TEST(Graph, KeepsWhereModelsBegin) {
+  const TemporaryFolder folder;
+  DeformationGraph graph = Triangle();
+  graph.models = {{0, 2}, {1, 7}};
+  const std::string path = folder / "graph.json";
+  WriteGraph(path, graph, 4);
+  const DeformationGraph read = ReadGraph(path, nullptr);
+  ASSERT_EQ(read.models.size(), 2u);
+  EXPECT_EQ(read.models[1].node, 1);
+  EXPECT_EQ(read.models[1].frame, 7);
+  for (const char* wrong : {"7", "[3]", "[[0]]", "[[1, 2]]", "[[0, 2], [0, 3]]",
+                            "[[0, 2], [1, 2]]", "[[0, 0], [9, 1]]",
+                            "[[0, -1]]"}) {
+    folder.Write("graph.json",
+                 R"({"node_spacing": 1, "positions": [[1, 2, 3], [1, 2, 4]],
+                     "edges": [[], []], "models": )" +
+                     std::string(wrong) + "}");
+    EXPECT_THAT(GraphMessage(path), HasSubstr("field 'models'")) << wrong;
+  }
+}
+
 TEST(Graph, MayLackFirstSights) {
   const TemporaryFolder folder;
   folder.Write("graph.json", R"({"node_spacing": 1, "positions": [[1, 2, 3]],

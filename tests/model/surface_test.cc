@@ -86,6 +86,31 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
   }
 }
 
+TEST(Surface, BeginsAnewUnderItsIdAndKeepsWhatItWas) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
+  box.RecordMotions(4, true, {});
+  const std::size_t vertices = box.mesh().vertices.size();
+  const int nodes = box.graph().size();
+  LiveView empty = ViewWithBox(kHalf);
+  empty.labels.setTo(0);
+  EXPECT_FALSE(box.Reanchor(empty));
+  EXPECT_EQ(box.mesh().vertices.size(), vertices);
+  ASSERT_TRUE(box.Reanchor(ViewWithBox(kWhole)));
+  EXPECT_EQ(box.id(), 1);
+  EXPECT_EQ(box.first_frame(), 4);
+  EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
+  EXPECT_TRUE(box.history().frames.empty());
+  box.RecordMotions(5, true, {});
+  box.FinishMesh();
+  const SurfaceModel model = box.Model();
+  ASSERT_EQ(model.graph.models.size(), 2u);
+  EXPECT_EQ(model.graph.models[1].node, nodes);
+  EXPECT_EQ(model.graph.models[1].frame, 5);
+  EXPECT_EQ(model.history.frames.size(), 2u);
+  EXPECT_EQ(model.graph.size(), nodes + box.graph().size());
+}
+
 TEST(Surface, AGraphOfFewNodesNeedsNoMoreBlocks) {
   std::vector<std::size_t> blocks;
   for (const int max_nodes : {2000, 1}) {

@@ -32,8 +32,8 @@ TEST(PipelineOptions, RefuseValuesOutOfRange) {
                 "tracking stage (8)");
   ExpectRefused([](PipelineOptions* o) { o->min_birth_area = 1; },
                 "min_birth_area = 1: expected 0..1 of the image, not 1");
-  ExpectRefused([](PipelineOptions* o) { o->max_lost_young = 0; },
-                "max_lost_young = 0: expected frames >= 1");
+  ExpectRefused([](PipelineOptions* o) { o->max_lost = 0; },
+                "max_lost = 0: expected frames >= 1");
   ExpectRefused([](PipelineOptions* o) { o->min_tracked_pixels = 0; },
                 "min_tracked_pixels = 0: expected pixels >= 1");
 }

@@ -48,7 +48,7 @@ double PoseError(const SyntheticRun& run, const SplitFusion& fusion) {
 
 void ExpectSoundReport(const FrameReport& report) {
   const std::set<std::string> states = {"tracked", "born",   "lost",  "unseen",
-                                        "dropped", "merged", "hidden"};
+                                        "reanchored", "merged", "hidden"};
   const double whole = report.segment_seconds + report.split_seconds;
   EXPECT_GT(report.total_seconds, 0);
   for (const SurfaceReport& surface : report.surfaces) {
