@@ -147,6 +147,7 @@ void Surface::PlaceGraph(const LiveView& live) {
 void Surface::Fuse(const LiveView& live) {
   DepthObservation observation = ObserveSurface(live, id_);
   if (kind_ == SurfaceKind::kRigid) {
+    observation.others_refute = true;
     const Rigid3d camera_from_canonical = MeanRigidMotion(graph_);
     AllocateBand(observation, camera_from_canonical, &volume_);
     IntegrateRigid(observation, camera_from_canonical, &volume_);

@@ -8,7 +8,8 @@ namespace splitfusion {
 /// What a depth pixel may do to the volume of one surface.
 enum class PixelRole : std::uint8_t {
   kNone = 0,   ///< Says nothing about this surface.
-  kCarve = 1,  ///< Of another surface: space in front of it is free.
+  kCarve = 1,  ///< Of another surface: space in front of it is free; see also
+               ///< DepthObservation::others_refute.
   kWrite = 2,  ///< Of this surface: its distance is written, and it carves.
 };
 

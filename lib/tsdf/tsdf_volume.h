@@ -47,6 +47,11 @@ struct DepthObservation {
   /// (metres) from there is not written, only carved. Of warped surfaces.
   cv::Mat_<cv::Vec3f> places;
   double place_tolerance = 0;  ///< See `places`.
+  /// Whether pixels that only carve take their weight from voxels within the
+  /// truncation from them, too: what was fused there before another surface was
+  /// told apart, or while a detector was wrong, is forgotten in as many frames
+  /// as it was seen in.
+  bool others_refute = false;
 };
 
 /// Truncated signed distance of one surface in its canonical frame, with

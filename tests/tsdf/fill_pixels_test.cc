@@ -17,6 +17,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kTruncation = 0.02f;
+constexpr float kCarving = -0.07f;
 
 /// A row of pixels of all depths and roles; some are no depths and no roles.
 struct Row {
@@ -40,7 +41,7 @@ TEST(FillPixels, SaysWhatPixelsDo) {
     std::vector<FusionPixel> pixels(count);
     std::vector<float> reach(count, 1);
     FillPixels(row.depth.data(), row.weight.data(), row.role.data(), count,
-               kTruncation, pixels.data(), reach.data());
+               kTruncation, kCarving, pixels.data(), reach.data());
     for (int u = 0; u < count; ++u) {
       const auto role = static_cast<PixelRole>(row.role[u]);
       const bool writes = role == PixelRole::kWrite;
@@ -53,7 +54,7 @@ TEST(FillPixels, SaysWhatPixelsDo) {
       EXPECT_EQ(pixels[u].depth, row.depth[u]) << u << " of " << count;
       EXPECT_EQ(std::abs(pixels[u].weight), row.weight[u]);
       EXPECT_EQ(std::signbit(pixels[u].weight), !writes);
-      const float end = row.depth[u] + (writes ? kTruncation : -kTruncation);
+      const float end = row.depth[u] + (writes ? kTruncation : kCarving);
       EXPECT_EQ(reach[u], std::max(end, 1.0f));
     }
   }

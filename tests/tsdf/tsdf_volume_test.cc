@@ -196,6 +196,29 @@ TEST(TsdfVolume, PixelsOfOtherSurfacesCarveButDoNotWrite) {
   EXPECT_TRUE(ExtractMesh(volume, 0.5).empty());
 }
 
+TEST(TsdfVolume, WhatTurnsOutToBeAnotherSurfaceIsForgotten) {
+  const auto vertices_after = [](int fused, int refuted, double depth) {
+    TsdfVolume volume(kOptions);
+    for (int i = 0; i < fused; ++i) {
+      Fuse(WallDepth(SmallCamera(), 1.1), Rigid3d::Identity(), &volume);
+    }
+    DepthObservation other =
+        ObserveAll(SmallCamera(), WallDepth(SmallCamera(), depth));
+    other.role.setTo(static_cast<int>(PixelRole::kCarve));
+    other.others_refute = true;
+    for (int i = 0; i < refuted; ++i) {
+      IntegrateRigid(other, Rigid3d::Identity(), &volume);
+    }
+    return ExtractMesh(volume, 0.5).vertices.size();
+  };
+  const std::size_t wall = vertices_after(2, 0, 1.1);
+  ASSERT_GT(wall, 1000u);
+  EXPECT_EQ(vertices_after(2, 2, 1.1), 0u) << "as many frames as it was seen";
+  EXPECT_EQ(vertices_after(2, 2, 1.12), 0u);
+  EXPECT_EQ(vertices_after(20, 5, 1.1), wall) << "what was seen long stays";
+  EXPECT_EQ(vertices_after(2, 9, 1.0), wall) << "hidden, not refuted";
+}
+
 TEST(TsdfVolume, MeshesOnlyWhatWasObservedEnough) {
   TsdfVolume volume(kOptions);
   Fuse(WallDepth(SmallCamera(), 1.1), Rigid3d::Identity(), &volume);

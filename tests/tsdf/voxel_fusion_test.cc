@@ -77,6 +77,7 @@ DepthObservation RandomObservation(std::mt19937* random) {
       observation.color.at<cv::Vec3b>(v, u) = cv::Vec3b(roll, 20 * roll, 99);
     }
   }
+  observation.others_refute = die(*random) < 6;
   return observation;
 }
 
@@ -133,7 +134,12 @@ bool UpdateVoxel(const DepthObservation& seen, const float dither[],
   is_certain = is_certain && !IsClose(std::abs(sdf), truncation, kMargin) &&
                !IsClose(sdf, free_from, kMargin);
   const bool in_band = role == PixelRole::kWrite && sdf >= -truncation;
-  if (!in_band && sdf <= truncation) return is_certain;
+  if (!in_band && sdf <= truncation) {
+    if (seen.others_refute && sdf > -truncation) {
+      block->weight[i] = std::max(block->weight[i] - seen.weight(v, u), 0.0f);
+    }
+    return is_certain;
+  }
   const bool empty = sdf > free_from;
   const double confidence = empty ? 3 : seen.weight(v, u);
   const double sum = block->weight[i] + confidence;

@@ -13,8 +13,8 @@ namespace internal {
 
 SPLITFUSION_VECTOR_CLONES
 void FillPixels(const float* __restrict depth, const float* __restrict weight,
-                const std::uint8_t* __restrict role, int count,
-                float truncation, FusionPixel* __restrict pixels,
+                const std::uint8_t* __restrict role, int count, float writing,
+                float carving, FusionPixel* __restrict pixels,
                 float* __restrict reach) {
   constexpr auto kWrites = static_cast<std::uint8_t>(PixelRole::kWrite);
   constexpr auto kCarves = static_cast<std::uint8_t>(PixelRole::kCarve);
@@ -26,7 +26,7 @@ void FillPixels(const float* __restrict depth, const float* __restrict weight,
     const float confidence = counts ? weight[u] : 0;
     pixels[u].depth = known;
     pixels[u].weight = writes ? confidence : -confidence;
-    const float reaches = known + (writes ? truncation : -truncation);
+    const float reaches = known + (writes ? writing : carving);
     reach[u] = reach[u] < reaches ? reaches : reach[u];
   }
 }

@@ -70,6 +70,7 @@ FusionImage::FusionImage(const DepthObservation& observation,
            static_cast<float>(camera.cy),
            {},
            truncation_,
+           observation.others_refute ? 1.0f : 0.0f,
            static_cast<float>(options.max_weight),
            static_cast<float>(options.max_free_weight)};
   for (int z = 0; z < 8; ++z) view_.dither[z] = Dither(time, z);
@@ -84,7 +85,9 @@ void FusionImage::FillTiles(const DepthObservation& observation, int tile_row) {
   for (int v = tile_row * kTile; v < end; ++v) {
     const std::size_t row = static_cast<std::size_t>(v) * width;
     FillPixels(observation.depth[v], observation.weight[v], observation.role[v],
-               width, truncation_, &pixels_[row], reach.data());
+               width, truncation_,
+               observation.others_refute ? truncation_ : -truncation_,
+               &pixels_[row], reach.data());
     if (color_ == nullptr) continue;
     FillColors(observation.color.ptr(v), width, &color_[row]);
   }

@@ -40,7 +40,7 @@ struct SlabPixels {
 /// What these say about the voxels.
 struct SlabUpdate {
   float sdf[kSlab];         // Metres, positive in front.
-  float confidence[kSlab];  // 0: nothing.
+  float confidence[kSlab];  // 0: nothing; negative: taken from the weight.
   std::int32_t is_free[kSlab];
   float
       color_blend[kSlab];  // Weight of the pixel's colour, the rest the old's.
@@ -103,11 +103,14 @@ SPLITFUSION_INLINE int Compare(const FusionView& view, const SeenSlab& at,
     const bool counts = sdf > (pixel.weight >= 0 ? -truncation : truncation);
     const bool is_free =
         sdf > truncation + kFreeSpaceSigmas * DepthSigma(pixel.depth);
-    const float confidence = counts ? std::fabs(pixel.weight) : 0;
+    // Of a pixel that only carves, within the truncation.
+    const float refuted =
+        sdf > -truncation ? std::min(view.refutation * pixel.weight, 0.0f) : 0;
+    const float confidence = counts ? std::fabs(pixel.weight) : refuted;
     update->sdf[i] = sdf;
     update->is_free[i] = is_free;
     update->confidence[i] = is_free ? kFreeSpaceWeight : confidence;
-    changes |= update->confidence[i] > 0;
+    changes |= update->confidence[i] != 0;
   }
   return changes;
 }
@@ -123,9 +126,9 @@ SPLITFUSION_INLINE int BlendDistances(const FusionView& view,
   for (int i = 0; i < kSlab; ++i) {
     const float distance = distances[i], weight = weights[i];
     const float sdf = update->sdf[i], confidence = update->confidence[i];
-    const float sum = weight + confidence;
-    // Nothing and nothing is nothing.
-    const float blend = confidence / std::max(sum, 1e-30f);
+    const float sum = std::max(weight + confidence, 0.0f);
+    // No division by zero where neither voxel nor pixel has a weight.
+    const float blend = std::max(confidence, 0.0f) / std::max(sum, 1e-30f);
     const float seen = std::max(-truncation, std::min(truncation, sdf));
     const float mean = distance + blend * (seen - distance);
     const bool emptied = (update->is_free[i] != 0) & (mean > 0.9f * truncation);

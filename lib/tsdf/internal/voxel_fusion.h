@@ -9,7 +9,7 @@ namespace internal {
 /// What one pixel does to the voxels on its ray.
 struct FusionPixel {
   float depth;   ///< Metres; - infinity: it changes nothing.
-  float weight;  ///< Confidence; negative: it only carves.
+  float weight;  ///< Confidence; negative: it carves, and may refute.
 };
 
 /// An observation, for loops that are free of Eigen and OpenCV.
@@ -23,6 +23,7 @@ struct FusionView {
   /// different in every integration.
   float dither[8];
   float truncation;  ///< Metres.
+  float refutation;  ///< Of the weight of pixels that only carve, 0 or 1.
   float max_weight, max_free_weight;
 };
 
