@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/report/frame_report.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/sequence/trajectory.h"
@@ -16,6 +15,7 @@
 #include "splitfusion/pipelines/motion_predictor.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
+#include "splitfusion/pipelines/registries.h"
 #include "splitfusion/pipelines/surface.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
@@ -25,12 +25,13 @@ namespace splitfusion {
 /// surfaces. Feed frames in order; read surfaces and trajectory at any time.
 class SplitFusion {
  public:
-  /// `segmenter` may be null: then nothing is split off. `terms`: what the
-  /// energy of the options may name; add your own to the built-in ones.
-  /// @throw InputError if an option is out of its range.
+  /// `segmenter` may be null: then nothing is split off. `registries`: what the
+  /// options may name; not kept.
+  /// @throw InputError if an option is out of its range or names something
+  ///     else.
   SplitFusion(const PinholeCamera& camera, const PipelineOptions& options,
               const LabelTable& labels, std::shared_ptr<Segmenter> segmenter,
-              const TermRegistry& terms = BuiltinTerms());
+              const Registries& registries = {});
 
   /// One frame of the paper's overview figure: split, track every surface,
   /// fuse every surface.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fusion_scenes.h"
-#include "splitfusion/lib/association/projective_association.h"
+#include "splitfusion/lib/association/association.h"
 
 namespace splitfusion {
 namespace {
@@ -31,8 +31,8 @@ struct RoomSamples {
 };
 
 Association AssociateRoom(const RoomSamples& room) {
-  return Associate(room.samples, room.warp, room.tracked.live, 0, kStride,
-                   AssociationGates());
+  return MakeProjectiveAssociator(room.tracked.live, 0)
+      ->Associate(room.samples, room.warp, kStride, AssociationGates());
 }
 
 void AssociateRow(benchmark::State& state) {

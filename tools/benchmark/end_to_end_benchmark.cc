@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "masked_frames.h"
-#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
 #include "splitfusion/pipelines/split_fusion.h"
@@ -25,7 +24,7 @@ void EndToEnd(benchmark::State& state) {
   const std::vector<MaskedFrame> film = FilmScene(scene, kFrames);
   for (auto _ : state) {
     SplitFusion fusion(scene.camera(), PipelineOptions(), LabelTable(),
-                       std::make_shared<GivenMasks>(film), BuiltinTerms());
+                       std::make_shared<GivenMasks>(film));
     const Stopwatch watch;
     for (const MaskedFrame& frame : film) fusion.ProcessFrame(frame.frame);
     state.SetIterationTime(watch.Seconds() / kFrames);

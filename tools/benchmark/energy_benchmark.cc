@@ -68,7 +68,7 @@ class DefaultSolve {
   DefaultSolve()
       : system_(Measured().system()),
         options_(EnergyScene::Options("gn_pcg")),
-        solver_(MakeLinearSolver(options_, Measured().scene().graph)),
+        solver_(MakePcgSolver(options_, Measured().scene().graph)),
         right_(system_.gradient) {
     for (Vector6& v : right_) v = -v;
   }

@@ -103,7 +103,7 @@ double DefaultResidual(const EnergyScene& scene, const MeasuredSystem& system,
                        const SolverOptions& options) {
   std::vector<Vector6> right = system.gradient, step;
   for (Vector6& v : right) v = -v;
-  MakeLinearSolver(options, scene.graph)->Solve(system.damped, right, &step);
+  MakePcgSolver(options, scene.graph)->Solve(system.damped, right, &step);
   std::vector<Vector6> product(step.size());
   system.damped.Multiply(step, &product);
   double squared = 0, size = 0;

@@ -2,6 +2,7 @@
 // against correspondences, on the scene of the energy benchmarks.
 
 #include <functional>
+#include <string>
 #include <utility>
 
 #include "energy_scene.h"
@@ -13,7 +14,7 @@ namespace {
 /// Every value of --solver as the flag alone gives it.
 std::vector<std::pair<std::string, SolverOptions>> Solvers() {
   std::vector<std::pair<std::string, SolverOptions>> solvers;
-  for (const char* name : {"gn_pcg", "gn_cholesky", "ceres"}) {
+  for (const std::string& name : BuiltinSolvers().names()) {
     solvers.emplace_back(name, EnergyScene::Options(name));
   }
   return solvers;

@@ -4,7 +4,7 @@
 
 #include "labelled_view.h"
 #include "people_scene.h"
-#include "splitfusion/lib/association/projective_association.h"
+#include "splitfusion/lib/association/association.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
@@ -69,8 +69,9 @@ FramePair::FramePair(int height) {
   const WarpField still(MakeRigidGraph(Rigid3d::Identity()));
   const AssociationGates gates = TrackerOptions().NonRigidStages()[0].gates;
   for (int label = 0; label <= kPeople; ++label) {
-    const Association association = Associate(SamplesOf(before, label), still,
-                                              after, label, kStride, gates);
+    const Association association =
+        MakeProjectiveAssociator(after, label)
+            ->Associate(SamplesOf(before, label), still, kStride, gates);
     pairs.push_back(association.correspondences);
   }
 }
