@@ -9,7 +9,7 @@
 namespace splitfusion {
 
 TermRegistry BuiltinTerms() {
-  TermRegistry registry;
+  TermRegistry registry("term");
   registry.Register("point_to_plane",
                     [] { return std::make_unique<PointToPlaneTerm>(); });
   registry.Register("color",

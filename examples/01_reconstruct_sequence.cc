@@ -14,7 +14,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/report/run_paths.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "splitfusion/lib/synthetic/synthetic_writer.h"
 #include "splitfusion/pipelines/split_fusion.h"
 
@@ -42,7 +42,7 @@ void Print(const splitfusion::FrameReport& report) {
 }
 
 void Reconstruct(const std::string& sequence, const std::string& output) {
-  splitfusion::TumReader reader(sequence);
+  splitfusion::ImageFolderReader reader(sequence);
   const std::string masks = splitfusion::FindMaskFolder(sequence);
   std::shared_ptr<splitfusion::Segmenter> segmenter;
   if (!masks.empty()) {

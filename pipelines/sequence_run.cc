@@ -19,14 +19,14 @@ namespace {
 constexpr std::uint32_t kCheckpointVersion = SplitFusion::kStateVersion;
 
 /// Indices of frames without usable images.
-std::vector<int> SkippedFrames(const TumReader& reader) {
+std::vector<int> SkippedFrames(const ImageFolderReader& reader) {
   std::vector<int> frames;
   for (const BadFrame& bad : reader.skipped()) frames.push_back(bad.index);
   return frames;
 }
 
 /// `reader` itself.
-const TumReader& Checked(const TumReader& reader) {
+const ImageFolderReader& Checked(const ImageFolderReader& reader) {
   if (!reader.options().skip_bad_frames) reader.CheckFrames();
   return reader;
 }
@@ -34,12 +34,14 @@ const TumReader& Checked(const TumReader& reader) {
 }  // namespace
 
 Reconstruction::Reconstruction(const std::string& sequence,
-                               const TumReaderOptions& reading,
+                               const ReaderOptions& reading,
                                const PipelineOptions& options,
                                const LabelTable& labels,
-                               const SegmenterMaker& segmenter)
-    : reader(sequence, reading),
-      fusion(Checked(reader).camera(), options, labels, segmenter(reader)) {}
+                               const SegmenterMaker& segmenter,
+                               const Registries& registries)
+    : reader(sequence, reading, registries.formats),
+      fusion(Checked(reader).camera(), options, labels, segmenter(reader),
+             registries) {}
 
 SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
                          const Maker& make, RunFolder* folder,

@@ -13,7 +13,7 @@
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
 #include "splitfusion/lib/report/surface_output.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "splitfusion/pipelines/split_fusion.h"
 
 namespace splitfusion {
@@ -56,17 +56,19 @@ struct SequenceRunHooks {
 struct Reconstruction {
   /// What makes the masks of a sequence; null if nothing does.
   using SegmenterMaker =
-      std::function<std::shared_ptr<Segmenter>(const TumReader&)>;
+      std::function<std::shared_ptr<Segmenter>(const ImageFolderReader&)>;
 
   /// Looks at all images first, unless bad ones may be skipped.
   ///
-  /// @throw InputError if the sequence or an option cannot be used.
-  Reconstruction(const std::string& sequence, const TumReaderOptions& reading,
+  /// @throw InputError if the sequence or an option cannot be used, or names
+  ///     what `registries` do not hold.
+  Reconstruction(const std::string& sequence, const ReaderOptions& reading,
                  const PipelineOptions& options, const LabelTable& labels,
-                 const SegmenterMaker& segmenter);
+                 const SegmenterMaker& segmenter,
+                 const Registries& registries = {});
 
-  TumReader reader;    ///< At its first frame.
-  SplitFusion fusion;  ///< Before its first frame.
+  ImageFolderReader reader;  ///< At its first frame.
+  SplitFusion fusion;        ///< Before its first frame.
 };
 
 /// One run of the method over a sequence into a run directory, with

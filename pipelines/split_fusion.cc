@@ -16,13 +16,14 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
                          const PipelineOptions& options,
                          const LabelTable& labels,
                          std::shared_ptr<Segmenter> segmenter,
-                         const TermRegistry& terms)
+                         const Registries& registries)
     : camera_(camera),
       options_(options),
       segmenter_(std::move(segmenter)),
       splitter_(camera, labels, options.split),
       tracker_(options.tracker, options.solver,
-               ParseEnergy(options.terms, terms)) {
+               ParseEnergy(options.terms, registries.terms),
+               registries.associations, registries.solvers) {
   options_.Check();
   camera_.Check();
 }

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
@@ -16,6 +15,7 @@
 #include "splitfusion/lib/tracking/motion_predictor.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
+#include "splitfusion/pipelines/registries.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
@@ -24,12 +24,13 @@ namespace splitfusion {
 /// surfaces. Feed frames in order; read surfaces and trajectory at any time.
 class SplitFusion {
  public:
-  /// `segmenter` may be null: then nothing is split off. `terms`: what the
-  /// energy of the options may name; add your own to the built-in ones.
-  /// @throw InputError if an option is out of its range.
+  /// `segmenter` may be null: then nothing is split off. `registries`: what the
+  /// options may name; not kept.
+  /// @throw InputError if an option is out of its range or names something
+  ///     else.
   SplitFusion(const PinholeCamera& camera, const PipelineOptions& options,
               const LabelTable& labels, std::shared_ptr<Segmenter> segmenter,
-              const TermRegistry& terms = BuiltinTerms());
+              const Registries& registries = {});
 
   /// One frame of the paper's overview figure: split, track every surface,
   /// fuse every surface.

@@ -116,6 +116,11 @@ std::vector<TrackingStage> TrackerOptions::NonRigidStages() const {
 }
 
 void TrackerOptions::List(OptionList* list) {
+  list->Text("association", &association,
+             "How pairs of model and live points are found: projective, in the "
+             "pixel that the model point projects to, or closest_point in "
+             "space.")
+      .common = true;
   list->Number("rigid_distance", &rigid_distance, Range::Above(0), "metres",
                "Largest distance of pairs in the first rigid stage; the last "
                "has half of it.")
@@ -163,49 +168,58 @@ void TrackerOptions::List(OptionList* list) {
 
 void TrackerOptions::Check() const { CheckOptions(*this); }
 
-SurfaceTracker::SurfaceTracker(TrackerOptions options, SolverOptions solver,
-                               Energy energy)
+SurfaceTracker::SurfaceTracker(TrackerOptions options,
+                               const SolverOptions& solver, Energy energy,
+                               AssociationRegistry associations,
+                               const SolverRegistry& solvers)
     : options_(std::move(options)),
       rigid_stages_(options_.RigidStages()),
       non_rigid_stages_(options_.NonRigidStages()),
-      solver_(std::move(solver)),
+      associations_(std::move(associations)),
+      initial_radius_(solver.initial_radius),
       energy_(std::move(energy)) {
   options_.Check();
-  solver_.Check();
+  solver.Check();
+  associations_.Check(options_.association);
+  solver_ = solvers.Make(solver.solver, solver);
 }
 
 void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
                            const LiveView& live, std::uint16_t surface,
                            const Rigid3d& still, DeformationGraph* graph,
                            SurfaceReport* report) const {
+  const std::unique_ptr<Associator> associator =
+      associations_.Make(options_.association, live, surface);
+  const Target target{live, surface, *associator};
   DeformationGraph predicted = *graph;
   DeformationGraph stayed = predicted;
   Rigid3d back = still;
   ApplyRigidMotion(still, &stayed);
-  if (Misfit(samples, live, surface, predicted) >
-      options_.velocity_gain * Misfit(samples, live, surface, stayed)) {
+  if (Misfit(samples, target, predicted) >
+      options_.velocity_gain * Misfit(samples, target, stayed)) {
     predicted = stayed;
     back = Rigid3d::Identity();
   }
   const bool tracked =
-      TrackFrom(predicted, back, samples, live, surface, graph, report);
+      TrackFrom(predicted, back, samples, target, graph, report);
   report->state = tracked ? "tracked" : "lost";
   if (!tracked) *graph = predicted;
 }
 
 double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
-                              const LiveView& live, std::uint16_t surface,
+                              const Target& target,
                               const DeformationGraph& graph) const {
   const TrackingStage stage =
       FittedStage(rigid_stages_.front(), options_.min_samples / 4, samples);
   const WarpField warp(graph);
   const Association association =
-      Associate(samples, warp, live, surface, stage.stride, stage.gates);
+      target.associator.Associate(samples, warp, stage.stride, stage.gates);
   const AssociationCounts& counts = association.counts;
   // Truncated at 2 cm and at a fifth of the grey range; a sample that fits
   // nowhere counts 1 for each.
-  double sum = 2.0 * (counts.distance + counts.normal_angle +
-                      counts.other_surface + counts.occluded);
+  double sum = 2.0 * (counts.Count(Rejection::kMisfit) +
+                      counts.Count(Rejection::kAbsent) +
+                      counts.Count(Rejection::kOccluded));
   for (const Correspondence& c : association.correspondences) {
     const double distance =
         c.warped_normal.dot(warp.WarpPoint(c.model.skinning, c.model.point) -
@@ -221,30 +235,30 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
 bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
                                const Rigid3d& back,
                                const std::vector<ModelSample>& samples,
-                               const LiveView& live, std::uint16_t surface,
-                               DeformationGraph* graph,
+                               const Target& target, DeformationGraph* graph,
                                SurfaceReport* report) const {
   *graph = start;
-  TrackRigid(samples, live, surface, back, graph, report);
+  TrackRigid(samples, target, back, graph, report);
   // The turn of a body far away must not count as a way travelled.
-  const Eigen::Vector3d pivot = surface == 0 ? Eigen::Vector3d::Zero().eval()
-                                             : CentroidOf(samples, start);
+  const Eigen::Vector3d pivot = target.surface == 0
+                                    ? Eigen::Vector3d::Zero().eval()
+                                    : CentroidOf(samples, start);
   Rigid3d motion = MeanRigidMotion(*graph) * MeanRigidMotion(start).inverse();
   motion.translation() = motion * pivot - pivot;
-  const bool must_fit = surface != 0 && !graph->rigid();
+  const bool must_fit = target.surface != 0 && !graph->rigid();
   report->reason = ReasonForLoss(must_fit, motion, *report);
   if (report->reason.empty() && !graph->rigid()) {
     DeformationGraph before = start;
     ApplyRigidMotion(back, &before);
-    TrackNonRigid(samples, live, surface, before.motions, graph, report);
+    TrackNonRigid(samples, target, before.motions, graph, report);
     report->reason = ReasonForLoss(must_fit, motion, *report);
   }
   return report->reason.empty();
 }
 
 void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
-                                const LiveView& live, std::uint16_t surface,
-                                const Rigid3d& back, DeformationGraph* graph,
+                                const Target& target, const Rigid3d& back,
+                                DeformationGraph* graph,
                                 SurfaceReport* report) const {
   const std::vector<ModelSample> warped = WarpedSamples(samples, *graph);
   DeformationGraph motion = MakeRigidGraph(Rigid3d::Identity());
@@ -257,7 +271,7 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
     const TrackingStage fitted =
         FittedStage(stage, options_.min_samples, samples);
     for (int round = 0; round < stage.rounds; ++round) {
-      if (RunRound(warped, live, surface, fitted, "rigid", 1.0, before, &motion,
+      if (RunRound(warped, target, fitted, "rigid", 1.0, before, &motion,
                    report)) {
         break;
       }
@@ -267,7 +281,7 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
 }
 
 void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
-                                   const LiveView& live, std::uint16_t surface,
+                                   const Target& target,
                                    const std::vector<NodeMotion>& before,
                                    DeformationGraph* graph,
                                    SurfaceReport* report) const {
@@ -279,7 +293,7 @@ void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
     for (int round = 0; round < stage.rounds; ++round, ++done) {
       const double progress = total > 1 ? done / (total - 1.0) : 1.0;
       const double factor = std::pow(options_.prior_anneal, 1 - progress);
-      const bool settled = RunRound(samples, live, surface, fitted, "non_rigid",
+      const bool settled = RunRound(samples, target, fitted, "non_rigid",
                                     factor, before, graph, report);
       if (settled && progress >= 1) return;
     }
@@ -287,8 +301,7 @@ void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
 }
 
 bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
-                              const LiveView& live, std::uint16_t surface,
-                              const TrackingStage& stage,
+                              const Target& target, const TrackingStage& stage,
                               const std::string& name, double anneal,
                               const std::vector<NodeMotion>& before,
                               DeformationGraph* graph,
@@ -298,8 +311,8 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   round.stage = name;
   round.stride = stage.stride;
   round.anneal = anneal;
-  const Association association = Associate(samples, WarpField(*graph), live,
-                                            surface, stage.stride, stage.gates);
+  const Association association = target.associator.Associate(
+      samples, WarpField(*graph), stage.stride, stage.gates);
   round.association = association.counts;
   if (!graph->rigid()) {
     graph->seen = SeenShares(association.correspondences, graph->size());
@@ -307,12 +320,10 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   report->associate_seconds += stopwatch.Restart();
   bool settled = true;
   if (!association.correspondences.empty()) {
-    SolverOptions solver = solver_;
-    solver.initial_radius =
-        StartRadius(report->rounds, name, solver_.initial_radius);
-    round.solver = Minimize({energy_, association.correspondences, live.camera,
-                             &live, &before, anneal},
-                            solver, graph);
+    round.solver = solver_->Minimize(
+        {energy_, association.correspondences, target.live.camera, &target.live,
+         &before, anneal, StartRadius(report->rounds, name, initial_radius_)},
+        graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||
               (!WasTooLong(round.solver) &&
@@ -333,13 +344,12 @@ std::string SurfaceTracker::ReasonForLoss(bool must_fit, const Rigid3d& motion,
     return "only " + std::to_string(counts.accepted) +
            " correspondences at stride " + std::to_string(last.stride);
   }
-  const int comparable =
-      counts.accepted + counts.distance + counts.normal_angle;
+  const int comparable = counts.accepted + counts.Count(Rejection::kMisfit);
   if (counts.accepted < options_.min_accepted * comparable) {
     return "only " + std::to_string(counts.accepted) + " of " +
            std::to_string(comparable) + " model points fit the depth";
   }
-  const int expected = comparable + counts.other_surface;
+  const int expected = comparable + counts.Count(Rejection::kAbsent);
   if (must_fit && counts.accepted < options_.min_fit * expected) {
     return "only " + std::to_string(counts.accepted) + " of " +
            std::to_string(expected) + " model points in view lie on it";

@@ -2,10 +2,11 @@
 #define SPLITFUSION_PIPELINES_SURFACE_TRACKER_H_
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/association/projective_association.h"
+#include "splitfusion/lib/association/association.h"
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/frame/live_view.h"
@@ -23,6 +24,7 @@ struct TrackingStage {
 
 /// How one surface is tracked in one frame.
 struct TrackerOptions {
+  std::string association = "projective";  ///< A name of the registry in use.
   double rigid_distance = 0.10;  ///< First gate of the rigid stages, metres.
   double rigid_angle = 30;       ///< First one of normals, degrees.
   double non_rigid_distance = 0.10;  ///< First gate of the non-rigid stages.
@@ -64,13 +66,17 @@ struct TrackerOptions {
 };
 
 /// Tracks one surface from model to frame (SplitFusion IV-C): alternates
-/// projective association and minimisation of the energy, rigid first, then, if
+/// association and minimisation of the energy, rigid first, then, if
 /// the graph has more than one node, non-rigid with the prior annealed from
 /// stiff to soft; coarse to fine over the image resolution.
 class SurfaceTracker {
  public:
-  /// @throw InputError if an option is out of its range.
-  SurfaceTracker(TrackerOptions options, SolverOptions solver, Energy energy);
+  /// @throw InputError if an option is out of its range or names what is not
+  ///     registered.
+  SurfaceTracker(TrackerOptions options, const SolverOptions& solver,
+                 Energy energy,
+                 AssociationRegistry associations = BuiltinAssociations(),
+                 const SolverRegistry& solvers = BuiltinSolvers());
 
   /// Moves the graph, which comes in at the predicted motions, so that the
   /// samples lie on the live pixels of `surface`. `still` is the rigid motion
@@ -84,32 +90,39 @@ class SurfaceTracker {
              DeformationGraph* graph, SurfaceReport* report) const;
 
  private:
-  double Misfit(const std::vector<ModelSample>& samples, const LiveView& live,
-                std::uint16_t surface, const DeformationGraph& graph) const;
+  /// What a surface is compared with in one frame.
+  struct Target {
+    const LiveView& live;
+    std::uint16_t surface;
+    const Associator& associator;
+  };
+
+  double Misfit(const std::vector<ModelSample>& samples, const Target& target,
+                const DeformationGraph& graph) const;
   /// `back`: the rigid motion of the camera frame from `start` to where the
   /// surface was.
   bool TrackFrom(const DeformationGraph& start, const Rigid3d& back,
-                 const std::vector<ModelSample>& samples, const LiveView& live,
-                 std::uint16_t surface, DeformationGraph* graph,
-                 SurfaceReport* report) const;
-  void TrackRigid(const std::vector<ModelSample>& samples, const LiveView& live,
-                  std::uint16_t surface, const Rigid3d& back,
-                  DeformationGraph* graph, SurfaceReport* report) const;
+                 const std::vector<ModelSample>& samples, const Target& target,
+                 DeformationGraph* graph, SurfaceReport* report) const;
+  void TrackRigid(const std::vector<ModelSample>& samples, const Target& target,
+                  const Rigid3d& back, DeformationGraph* graph,
+                  SurfaceReport* report) const;
   void TrackNonRigid(const std::vector<ModelSample>& samples,
-                     const LiveView& live, std::uint16_t surface,
+                     const Target& target,
                      const std::vector<NodeMotion>& before,
                      DeformationGraph* graph, SurfaceReport* report) const;
-  bool RunRound(const std::vector<ModelSample>& samples, const LiveView& live,
-                std::uint16_t surface, const TrackingStage& stage,
-                const std::string& name, double anneal,
-                const std::vector<NodeMotion>& before, DeformationGraph* graph,
-                SurfaceReport* report) const;
+  bool RunRound(const std::vector<ModelSample>& samples, const Target& target,
+                const TrackingStage& stage, const std::string& name,
+                double anneal, const std::vector<NodeMotion>& before,
+                DeformationGraph* graph, SurfaceReport* report) const;
   std::string ReasonForLoss(bool must_fit, const Rigid3d& motion,
                             const SurfaceReport& report) const;
 
   TrackerOptions options_;
   std::vector<TrackingStage> rigid_stages_, non_rigid_stages_;
-  SolverOptions solver_;
+  AssociationRegistry associations_;
+  std::unique_ptr<Solver> solver_;
+  double initial_radius_;
   Energy energy_;
 };
 

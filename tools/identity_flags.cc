@@ -10,13 +10,11 @@
 
 #include "method_flags.h"
 #include "run_flags.h"
-#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/content_cache.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/number_text.h"
 #include "splitfusion/lib/base/owned_files.h"
-#include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/lib/experiment/settings.h"
 #include "splitfusion/lib/report/library_versions.h"
 #include "splitfusion/lib/report/run_paths.h"
@@ -89,8 +87,8 @@ void AddFlags(RunIdentity* identity) {
   }
 }
 
-void AddTerms(RunIdentity* identity) {
-  const Energy energy = ParseEnergy(MethodFlags().terms, BuiltinTerms());
+void AddTerms(const TermRegistry& terms, RunIdentity* identity) {
+  const Energy energy = ParseEnergy(MethodFlags().terms, terms);
   for (const auto& [key, value] : TermOptionValues(energy)) {
     identity->parts["terms." + key] = value;
   }
@@ -100,7 +98,7 @@ void AddTerms(RunIdentity* identity) {
   identity->parts["terms"] = order;
 }
 
-void AddFrames(const TumReader& reader, const ContentCache& cache,
+void AddFrames(const ImageFolderReader& reader, const ContentCache& cache,
                RunIdentity* identity) {
   std::vector<std::string> files;
   ContentHash hash;
@@ -165,28 +163,29 @@ void SetFlag(const std::string& key, const std::string& value) {
 
 }  // namespace
 
-void ApplySetFlag() {
+void ApplySetFlag(const TermRegistry& terms) {
   if (FLAGS_set.empty()) return;
   const Settings settings = ParseSettings(FLAGS_set, "set");
   for (const auto& [key, value] : settings.entries()) {
     if (key.rfind("terms.", 0) != 0) SetFlag(key, value);
   }
-  Energy energy = ParseEnergy(MethodFlags().terms, BuiltinTerms());
+  Energy energy = ParseEnergy(MethodFlags().terms, terms);
   bool changed = false;
   for (const auto& [key, value] : settings.entries()) {
     if (key.rfind("terms.", 0) != 0) continue;
-    SetTermOption(key.substr(6), value, BuiltinTerms(), &energy);
+    SetTermOption(key.substr(6), value, terms, &energy);
     changed = true;
   }
   if (changed) MethodFlags().terms = EnergyText(energy);
   FLAGS_set.clear();  // The options that repeat the run have it resolved.
 }
 
-RunIdentity IdentityFromFlags(const TumReader& reader) {
+RunIdentity IdentityFromFlags(const ImageFolderReader& reader,
+                              const TermRegistry& terms) {
   const ContentCache cache(UserCacheFolder());
   RunIdentity identity;
   AddFlags(&identity);
-  AddTerms(&identity);
+  AddTerms(terms, &identity);
   AddFrames(reader, cache, &identity);
   identity.parts["input.masks"] = MasksHash(cache);
   identity.parts["input.labels"] = FileHash(FLAGS_labels);

@@ -1,8 +1,9 @@
 #ifndef SPLITFUSION_TOOLS_IDENTITY_FLAGS_H_
 #define SPLITFUSION_TOOLS_IDENTITY_FLAGS_H_
 
+#include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/lib/report/run_identity.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 
 namespace splitfusion {
 
@@ -10,14 +11,15 @@ namespace splitfusion {
 /// energy. Before any other flag is read.
 ///
 /// @throw InputError if a key or value is unknown.
-void ApplySetFlag();
+void ApplySetFlag(const TermRegistry& terms);
 
 /// What decides the result of a run of these flags: the options of the method,
 /// the contents of images, calibration, masks, labels and network, the method
 /// itself and the libraries under it.
 ///
 /// @throw InputError if something that the flags name cannot be read.
-RunIdentity IdentityFromFlags(const TumReader& reader);
+RunIdentity IdentityFromFlags(const ImageFolderReader& reader,
+                              const TermRegistry& terms);
 
 /// {"identity", "identity_parts", "outputs"}, for programs.
 std::string IdentityText(const RunIdentity& identity);

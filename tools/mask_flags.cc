@@ -40,7 +40,7 @@ std::shared_ptr<Segmenter> MakeNetworkSegmenter(const std::string& run) {
 }
 
 /// Stems by which the masks of a frame are found; empty where there are none.
-std::vector<std::string> StemsWithMasks(const TumReader& reader,
+std::vector<std::string> StemsWithMasks(const ImageFolderReader& reader,
                                         const MaskFolderSegmenter& segmenter) {
   std::vector<std::string> stems;
   for (int i = 0; i < reader.size(); ++i) {
@@ -54,8 +54,8 @@ std::vector<std::string> StemsWithMasks(const TumReader& reader,
 }
 
 /// @throw InputError if no frame has a mask: names of another image do not fit.
-void CheckMasksFit(const TumReader& reader, std::size_t frames_with_masks,
-                   const std::string& folder) {
+void CheckMasksFit(const ImageFolderReader& reader,
+                   std::size_t frames_with_masks, const std::string& folder) {
   const std::string frames = std::to_string(reader.size());
   if (frames_with_masks == 0) {
     throw InputError(folder + ": no mask for any of the " + frames +
@@ -86,7 +86,7 @@ void WarnOfUnknownClasses(const std::string& groups, const LabelTable& table,
                << unknown;
 }
 
-std::shared_ptr<Segmenter> MakeFolderSegmenter(const TumReader& reader,
+std::shared_ptr<Segmenter> MakeFolderSegmenter(const ImageFolderReader& reader,
                                                const std::string& folder,
                                                const PipelineOptions& options) {
   CheckOption(FLAGS_mask_kind == "rigid" || FLAGS_mask_kind == "non_rigid",
@@ -114,7 +114,7 @@ LabelTable LabelsFromFlags() {
                               : LabelTable::FromFile(FLAGS_labels);
 }
 
-std::shared_ptr<Segmenter> SegmenterFromFlags(const TumReader& reader,
+std::shared_ptr<Segmenter> SegmenterFromFlags(const ImageFolderReader& reader,
                                               const PipelineOptions& options,
                                               const std::string& run) {
   if (HasNetworkFlags()) {

@@ -6,7 +6,7 @@
 
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 
 namespace splitfusion {
@@ -23,7 +23,7 @@ LabelTable LabelsFromFlags();
 ///
 /// @throw InputError if a flag's value is out of its range, or the masks do not
 ///     fit.
-std::shared_ptr<Segmenter> SegmenterFromFlags(const TumReader& reader,
+std::shared_ptr<Segmenter> SegmenterFromFlags(const ImageFolderReader& reader,
                                               const PipelineOptions& options,
                                               const std::string& run);
 

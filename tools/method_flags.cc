@@ -32,9 +32,14 @@ std::string HelpOf(const Option& option) {
 }
 
 /// The option with its default in a row of the table.
-std::string Row(const Option& option) {
+std::string Row(const Option& option, const Registries& registries) {
+  std::string expected = option.Expected();
+  if (option.name == "solver") expected = AnyOf(registries.solvers.names());
+  if (option.name == "association") {
+    expected = AnyOf(registries.associations.names());
+  }
   return "| `" + option.name + "` | `" + option.ValueText() + "` | " +
-         option.Expected() + " | " + option.help + " |\n";
+         expected + " | " + option.help + " |\n";
 }
 
 }  // namespace
@@ -77,7 +82,7 @@ void TakeMethodFlags(PipelineOptions* options) {
   MethodFlags() = *options;
 }
 
-std::string MethodOptionsMarkdown() {
+std::string MethodOptionsMarkdown(const Registries& registries) {
   std::string text =
       "# Options of the method\n\n"
       "Every option of the method is a flag of `sf_run` and a key of "
@@ -89,7 +94,7 @@ std::string MethodOptionsMarkdown() {
             (common ? "Common options" : "Other options") +
             "\n\n| option | default | range | meaning |\n|---|---|---|---|\n";
     for (const Option& option : Storage().default_list.options()) {
-      if (option.common == common) text += Row(option);
+      if (option.common == common) text += Row(option, registries);
     }
   }
   return text;

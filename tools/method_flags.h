@@ -4,6 +4,7 @@
 #include <string>
 
 #include "splitfusion/pipelines/pipeline_options.h"
+#include "splitfusion/pipelines/registries.h"
 
 namespace splitfusion {
 
@@ -20,8 +21,9 @@ PipelineOptions& MethodFlags();
 /// preset left them, and their flags follow.
 void TakeMethodFlags(PipelineOptions* options);
 
-/// All options of the method as a table in Markdown: docs/options.md.
-std::string MethodOptionsMarkdown();
+/// All options of the method, with the names registered, as a table in
+/// Markdown: docs/options.md.
+std::string MethodOptionsMarkdown(const Registries& registries);
 
 }  // namespace splitfusion
 

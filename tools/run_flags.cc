@@ -9,7 +9,6 @@
 
 #include "method_flags.h"
 #include "sequence_flags.h"
-#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/pipelines/presets.h"
@@ -48,8 +47,8 @@ PinholeCamera ParseIntrinsics(const std::string& text) {
 
 }  // namespace
 
-TumReaderOptions ReaderOptionsFromFlags() {
-  TumReaderOptions options = FramesFromFlags();
+ReaderOptions ReaderOptionsFromFlags() {
+  ReaderOptions options = FramesFromFlags();
   options.depth_scale = FLAGS_depth_scale;
   options.skip_bad_frames = FLAGS_skip_bad_frames;
   options.depth_filter.min_depth = FLAGS_min_depth;
@@ -61,17 +60,19 @@ TumReaderOptions ReaderOptionsFromFlags() {
   return options;
 }
 
-PipelineOptions PipelineOptionsFromFlags() {
+PipelineOptions PipelineOptionsFromFlags(const Registries& registries) {
   PipelineOptions options;
   ApplyPreset(FLAGS_preset, &options);
   TakeMethodFlags(&options);
   try {
-    ParseEnergy(options.terms, BuiltinTerms());
+    ParseEnergy(options.terms, registries.terms);
   } catch (const OptionError& error) {
     // A text within a text: what is wrong in it names the flag.
     throw InputError(std::string("--terms: ") + error.what());
   }
   options.Check();
+  registries.associations.Check(options.tracker.association);
+  registries.solvers.Make(options.solver.solver, options.solver);
   return options;
 }
 

@@ -5,18 +5,18 @@
 
 #include <string>
 
-#include "splitfusion/lib/sequence/tum_reader.h"
-#include "splitfusion/pipelines/pipeline_options.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
+#include "splitfusion/pipelines/split_fusion.h"
 
 namespace splitfusion {
 
 /// Reader options from the flags of sf_run.
-TumReaderOptions ReaderOptionsFromFlags();
+ReaderOptions ReaderOptionsFromFlags();
 
 /// Options of the method from the flags of sf_run, the preset applied first.
 ///
-/// @throw InputError if a flag's value is out of its range.
-PipelineOptions PipelineOptionsFromFlags();
+/// @throw InputError if a flag's value is out of its range or not registered.
+PipelineOptions PipelineOptionsFromFlags(const Registries& registries);
 
 /// Whether a flag is one of sf_run's own, gflags' and glog's left out.
 bool IsRunFlag(const gflags::CommandLineFlagInfo& flag);

@@ -7,8 +7,10 @@
 
 #include "splitfusion/lib/base/error.h"
 
-DEFINE_string(sequence, "", "Folder of the sequence, TUM RGB-D layout.");
-DEFINE_int32(first_frame, 0, "Index of the first frame to read.");
+DEFINE_string(sequence, "", "Folder of the sequence.");
+DEFINE_string(format, "auto",
+              "Of the sequence: tum, 7scenes, or auto, what recognises it.");
+DEFINE_int32(first_frame, 0, "Frames before it are skipped.");
 DEFINE_int32(max_frames, 0, "Frames read at most; 0 = all.");
 DEFINE_int32(threads, 2, "Threads of all but Ceres; 0 = one for each core.");
 
@@ -20,10 +22,11 @@ int ThreadsFromFlags() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-TumReaderOptions FramesFromFlags() {
+ReaderOptions FramesFromFlags() {
   CheckOption(!FLAGS_sequence.empty(), "sequence", "''",
               "the folder of a sequence");
-  TumReaderOptions options;
+  ReaderOptions options;
+  options.format = FLAGS_format;
   options.first_frame = FLAGS_first_frame;
   options.max_frames = FLAGS_max_frames;
   options.Check();

@@ -3,7 +3,7 @@
 
 #include <tbb/global_control.h>
 
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 
 namespace splitfusion {
 
@@ -11,7 +11,7 @@ namespace splitfusion {
 /// rest of the options is left at its defaults.
 ///
 /// @throw InputError if --sequence is missing or a value is out of its range.
-TumReaderOptions FramesFromFlags();
+ReaderOptions FramesFromFlags();
 
 /// --threads, or one a core. @throw InputError if it is out of its range.
 int ThreadsFromFlags();

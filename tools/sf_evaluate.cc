@@ -159,9 +159,11 @@ void CheckRunFiles() {
   }
 }
 
-void EvaluateRunDirectory(const EvaluationOptions& options) {
+void EvaluateRunDirectory(const EvaluationOptions& options,
+                          const FormatRegistry& formats) {
   CheckRunFiles();
   RecordedRun run = ReadRun(FLAGS_run);
+  run.formats = formats;
   if (!IsComplete(RunPaths(FLAGS_run))) {
     std::cout << FLAGS_run << ": unfinished run (summary.json is missing or "
               << "says so); judged by the frames that it has\n";
@@ -204,7 +206,7 @@ void CheckUsage() {
           "--mesh and --ground_truth_mesh go together");
 }
 
-int Run() {
+int Run(const FormatRegistry& formats) {
   CheckUsage();
   const EvaluationOptions options = OptionsFromFlags();
   if (FLAGS_check_only) return kExitDone;
@@ -213,7 +215,7 @@ int Run() {
   } else if (!FLAGS_mesh.empty()) {
     EvaluateMesh(options);
   } else {
-    EvaluateRunDirectory(options);
+    EvaluateRunDirectory(options, formats);
   }
   return kExitDone;
 }
@@ -222,6 +224,7 @@ int Run() {
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
-  return splitfusion::ToolMain(argc, argv, splitfusion::kUsage,
-                               splitfusion::Run);
+  return splitfusion::ToolMain(argc, argv, splitfusion::kUsage, [] {
+    return splitfusion::Run(splitfusion::BuiltinFormats());
+  });
 }

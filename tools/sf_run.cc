@@ -23,7 +23,7 @@
 #include "splitfusion/lib/report/disk_space.h"
 #include "splitfusion/lib/report/library_versions.h"
 #include "splitfusion/lib/report/run_folder.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "splitfusion/pipelines/sequence_run.h"
 #include "tool_main.h"
 
@@ -44,6 +44,7 @@ DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,
             "Warped meshes show also what was seen only later.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
+DECLARE_string(format);
 DECLARE_string(masks);
 DECLARE_string(preset);
 DECLARE_string(sequence);
@@ -73,13 +74,15 @@ RunFolder OpenRunFolder(const RunIdentity& identity) {
 }
 
 std::unique_ptr<Reconstruction> MakeReconstruction(
-    const TumReaderOptions& reading, const PipelineOptions& options) {
+    const ReaderOptions& reading, const PipelineOptions& options,
+    const Registries& registries) {
   return std::make_unique<Reconstruction>(
       FLAGS_sequence, reading, options, LabelsFromFlags(),
-      [&](const TumReader& reader) {
+      [&](const ImageFolderReader& reader) {
         return SegmenterFromFlags(reader, options,
                                   RunPaths(FLAGS_output).Unfinished());
-      });
+      },
+      registries);
 }
 
 SequenceRunOptions RunOptionsFromFlags() {
@@ -112,7 +115,7 @@ SequenceRunHooks Hooks(ProgressLine* progress) {
 }
 
 /// A full disk is better found before the first frame than after the last.
-void CheckDisk(const TumReader& reader, const RunFolder& folder) {
+void CheckDisk(const ImageFolderReader& reader, const RunFolder& folder) {
   if (folder.start() != RunStart::kFresh) return;
   const PinholeCamera& camera = reader.camera();
   CheckDiskSpace(folder.unfinished().root(),
@@ -142,26 +145,17 @@ void CheckOutput() {
   CheckNotInOutput("from", FLAGS_from);
 }
 
-int RunSequence() {
-  if (FLAGS_print_options) {
-    std::cout << MethodOptionsMarkdown();
-    return kExitDone;
-  }
-  ApplySetFlag();
-  const TumReaderOptions reading = ReaderOptionsFromFlags();
-  const PipelineOptions options = PipelineOptionsFromFlags();
-  CheckValues();
-  if (FLAGS_print_identity) {
-    std::cout << IdentityText(
-        IdentityFromFlags(TumReader(FLAGS_sequence, reading)));
-    return kExitDone;
-  }
-  CheckOutput();
+/// The run itself, unless --output holds it.
+int Reconstruct(const ReaderOptions& reading, const PipelineOptions& options,
+                const Registries& registries) {
   const ThreadLimit threads;
   SetBlasThreads(1);
-  const auto make = [&] { return MakeReconstruction(reading, options); };
+  const auto make = [&] {
+    return MakeReconstruction(reading, options, registries);
+  };
   std::unique_ptr<Reconstruction> work = make();
-  RunFolder folder = OpenRunFolder(IdentityFromFlags(work->reader));
+  RunFolder folder =
+      OpenRunFolder(IdentityFromFlags(work->reader, registries.terms));
   if (folder.start() == RunStart::kFinished) {
     std::cout << FLAGS_output << ": holds the finished run of these options "
               << "and this input; nothing to do\n";
@@ -177,6 +171,28 @@ int RunSequence() {
   return kExitDone;
 }
 
+int RunSequence(const Registries& registries) {
+  if (FLAGS_print_options) {
+    std::cout << MethodOptionsMarkdown(registries);
+    return kExitDone;
+  }
+  ApplySetFlag(registries.terms);
+  ReaderOptions reading = ReaderOptionsFromFlags();
+  const PipelineOptions options = PipelineOptionsFromFlags(registries);
+  CheckValues();
+  if (!FLAGS_print_identity) CheckOutput();
+  // By its name, so that the options repeat the run and tell how to read again.
+  FLAGS_format = reading.format =
+      ResolveFormat(reading.format, FLAGS_sequence, registries.formats);
+  if (FLAGS_print_identity) {
+    std::cout << IdentityText(IdentityFromFlags(
+        ImageFolderReader(FLAGS_sequence, reading, registries.formats),
+        registries.terms));
+    return kExitDone;
+  }
+  return Reconstruct(reading, options, registries);
+}
+
 }  // namespace
 }  // namespace splitfusion
 
@@ -187,5 +203,5 @@ int main(int argc, char** argv) {
       "Tracks and maps the rigid and non-rigid objects of an RGB-D sequence.\n"
       "sf_run --sequence=DIR --output=RUN [--masks=DIR|none] [--preset=NAME]\n"
       "       [--model=FILE.onnx --decoder=yolov8seg|yolact]\n",
-      splitfusion::RunSequence);
+      [] { return splitfusion::RunSequence(splitfusion::Registries()); });
 }

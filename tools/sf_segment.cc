@@ -20,9 +20,7 @@
 #include "splitfusion/lib/report/frame_pictures.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 #include "splitfusion/lib/segmentation/mask_folder_writer.h"
-#include "splitfusion/lib/sequence/association_list.h"
-#include "splitfusion/lib/sequence/image_file.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "tool_main.h"
 
 DEFINE_string(output, "", "Folder of masks to write or to complete.");
@@ -44,8 +42,10 @@ constexpr char kUsage[] =
 /// Colour images of the sequence with the stems of their depth images.
 class ColorFrames {
  public:
-  explicit ColorFrames(const TumReaderOptions& options) {
-    pairs_ = FindAssociations(FLAGS_sequence, options.association_tolerance);
+  ColorFrames(const ReaderOptions& options, const FormatRegistry& formats)
+      : format_(formats.Make(
+            ResolveFormat(options.format, FLAGS_sequence, formats))),
+        pairs_(format_->FindFrames(FLAGS_sequence)) {
     first_ = options.first_frame;
     const int all = static_cast<int>(pairs_.size());
     CheckOption(first_ < all, "first_frame", first_,
@@ -69,11 +69,12 @@ class ColorFrames {
     frame.stem = Stem(index);
     const fs::path color = fs::path(FLAGS_sequence) / pairs_[index].color.file;
     frame.color_stem = color.stem().string();
-    frame.color = ReadColorImage(color.string());
+    frame.color = format_->ReadColor(color.string());
     return frame;
   }
 
  private:
+  std::unique_ptr<SequenceFormat> format_;
   std::vector<AssociatedFiles> pairs_;
   int first_ = 0;
   int end_ = 0;
@@ -82,8 +83,8 @@ class ColorFrames {
 /// One pass over the sequence.
 class Segmentation {
  public:
-  explicit Segmentation(const TumReaderOptions& options)
-      : frames_(options),
+  Segmentation(const ReaderOptions& options, const FormatRegistry& formats)
+      : frames_(options, formats),
         network_(NetworkFromFlags()),
         writer_(FLAGS_output, SettingsOf(*network_)) {}
 
@@ -160,8 +161,8 @@ class Segmentation {
   int instances_ = 0;
 };
 
-int Run() {
-  const TumReaderOptions options = FramesFromFlags();
+int Run(const FormatRegistry& formats) {
+  const ReaderOptions options = FramesFromFlags();
   CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
   CheckOption(fs::weakly_canonical(FLAGS_output) !=
                   fs::weakly_canonical(FLAGS_sequence),
@@ -169,7 +170,7 @@ int Run() {
               "another folder than the sequence itself");
   const ThreadLimit threads;
   if (FLAGS_overwrite) ClearMaskFolder(FLAGS_output);
-  Segmentation(options).Execute();
+  Segmentation(options, formats).Execute();
   return kExitDone;
 }
 
@@ -177,6 +178,7 @@ int Run() {
 }  // namespace splitfusion
 
 int main(int argc, char** argv) {
-  return splitfusion::ToolMain(argc, argv, splitfusion::kUsage,
-                               splitfusion::Run);
+  return splitfusion::ToolMain(argc, argv, splitfusion::kUsage, [] {
+    return splitfusion::Run(splitfusion::BuiltinFormats());
+  });
 }

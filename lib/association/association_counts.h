@@ -1,22 +1,42 @@
 #ifndef SPLITFUSION_LIB_ASSOCIATION_ASSOCIATION_COUNTS_H_
 #define SPLITFUSION_LIB_ASSOCIATION_ASSOCIATION_COUNTS_H_
 
+#include <string>
+#include <vector>
+
 namespace splitfusion {
 
-/// What became of the model points of one projective association. Every model
-/// point is counted exactly once below `model_points`.
+/// What the rejection of a model point tells of where its surface is.
+enum class Rejection {
+  kUntold,    ///< Nothing: no depth was measured that would tell.
+  kOccluded,  ///< Something else is before it.
+  kAbsent,    ///< It would be in view and is not there.
+  kMisfit,    ///< The surface is there, and does not fit.
+};
+
+/// Model points that an association rejected for one reason.
+struct RejectedPoints {
+  std::string reason;  ///< The association's word for it, a key of reports.
+  Rejection kind = Rejection::kUntold;  ///< What it tells.
+  int count = 0;                        ///< Model points.
+};
+
+/// What became of the model points of one association. Every model point is
+/// counted exactly once below `model_points`.
 struct AssociationCounts {
   int model_points = 0;  ///< Visible model samples.
-  /// Became correspondences.
-  int accepted = 0;
-  int outside_image = 0;  ///< Projects outside the live image.
-  int no_depth = 0;       ///< No live depth or normal at the pixel.
-  int occluded = 0;       ///< Behind the live pixel of another surface.
-  int other_surface = 0;  ///< Another one's pixel, not nearer; or uncertain.
-  int depth_edge = 0;     ///< The live pixel lies on a depth discontinuity.
-  int distance = 0;       ///< Farther apart than the gate.
-  int normal_angle = 0;   ///< Normals differ by more than the gate.
-  int grazing = 0;        ///< Live surface seen at too flat an angle.
+  int accepted = 0;      ///< Became correspondences.
+  /// The others, by the reasons that the association knows, in its order.
+  std::vector<RejectedPoints> rejected;
+
+  /// Rejected ones of a kind.
+  int Count(Rejection kind) const {
+    int count = 0;
+    for (const RejectedPoints& points : rejected) {
+      if (points.kind == kind) count += points.count;
+    }
+    return count;
+  }
 };
 
 }  // namespace splitfusion

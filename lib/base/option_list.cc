@@ -3,23 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "splitfusion/lib/base/any_of.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/number_text.h"
 
 namespace splitfusion {
-namespace {
-
-std::string Joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) text += i + 1 < words.size() ? ", " : " or ";
-    text += words[i];
-  }
-  return text;
-}
-
-}  // namespace
-
 bool Range::Holds(double value) const {
   return std::isfinite(value) && (above_low ? value > low : value >= low) &&
          (below_high ? value < high : value <= high);
@@ -41,7 +29,7 @@ std::string Range::Text(const std::string& unit) const {
 std::string Option::Expected() const {
   if (std::holds_alternative<bool*>(value)) return "true or false";
   if (std::holds_alternative<std::string*>(value)) {
-    return choices.empty() ? "a text" : Joined(choices);
+    return choices.empty() ? "a text" : AnyOf(choices);
   }
   return range.Text(unit);
 }

@@ -148,85 +148,46 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
   if (full_report) report->full_report = summary.FullReport();
 }
 
+class CeresSolver : public Solver {
+ public:
+  explicit CeresSolver(const SolverOptions& options) : options_(options) {
+    const std::string& name = options.preconditioner;
+    CheckOption(name != "two_level" && name != "block_ic0", "preconditioner",
+                name, "auto, identity or jacobi with solver ceres");
+    constexpr double kLeast = 1e-32, kLargest = 1e16;  // Of Ceres.
+    CheckOption(
+        options.initial_radius >= kLeast && options.initial_radius <= kLargest,
+        "initial_radius", options.initial_radius,
+        "1e-32..1e16 with solver ceres");
+  }
+
+  SolverReport Minimize(const SurfaceProblem& input,
+                        DeformationGraph* graph) const override {
+    const Stopwatch stopwatch;
+    SolverReport report;
+    CeresProblem problem(input, *graph);
+    const std::vector<double> initial = problem.TermCosts();
+    ceres::Solver::Options options = CeresOptions(options_, *graph);
+    if (input.initial_radius > 0) {
+      options.initial_trust_region_radius = input.initial_radius;
+    }
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, problem.problem(), &summary);
+    FillReport(summary, options_.full_report, &report);
+    report.terms = problem.Terms(initial, problem.TermCosts());
+    if (report.usable) ComposeTwists(problem.twists(), graph);
+    report.total_seconds = stopwatch.Seconds();
+    return report;
+  }
+
+ private:
+  SolverOptions options_;
+};
+
 }  // namespace
 
-void SolverOptions::List(OptionList* list) {
-  list->Choice("solver", &solver, {"gn_pcg", "gn_cholesky", "ceres"},
-               "Block Gauss-Newton with conjugate gradients (gn_pcg) or a "
-               "factorisation (gn_cholesky), or ceres.")
-      .common = true;
-  list->Choice("linear_solver", &linear_solver,
-               {"auto", "dense_qr", "dense_normal_cholesky",
-                "sparse_normal_cholesky", "cgnr"},
-               "Linear solver of ceres.")
-      .common = true;
-  list->Choice("preconditioner", &preconditioner,
-               {"auto", "two_level", "jacobi", "block_ic0", "identity"},
-               "For gn_pcg (auto: two_level); for cgnr jacobi (auto) or "
-               "identity.")
-      .common = true;
-  list->Demand(
-      solver == "gn_pcg" ||
-          (preconditioner != "two_level" && preconditioner != "block_ic0"),
-      "preconditioner", "auto, identity or jacobi with solver " + solver);
-  list->Choice("trust_region", &trust_region, {"levenberg_marquardt", "dogleg"},
-               "How the length of a step is limited.")
-      .common = true;
-  list->Demand(trust_region != "dogleg" || linear_solver != "cgnr",
-               "trust_region",
-               "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
-               "factorisation)");
-  list->Number("solver_threads", &threads, {1, 1024}, "threads",
-               "For ceres; with more than one the last digits vary from run to "
-               "run.");
-  list->Number("solver_iterations", &max_iterations, Range::AtLeast(1), "",
-               "Iterations of the solver for each association.")
-      .common = true;
-  list->Number("linear_iterations", &max_linear_solver_iterations,
-               Range::AtLeast(1), "",
-               "Conjugate gradient iterations of a step at most (gn_pcg, "
-               "cgnr).");
-  list->Number("eta", &eta, {0, 1, true, true}, "",
-               "Relative accuracy of a step's linear solve (gn_pcg, cgnr).");
-  list->Number("function_tolerance", &function_tolerance, Range::AtLeast(0), "",
-               "Converged when the relative change of the cost is smaller.");
-  list->Number("gradient_tolerance", &gradient_tolerance, Range::AtLeast(0), "",
-               "Converged when the gradient's largest entry is smaller.");
-  list->Number("parameter_tolerance", &parameter_tolerance, Range::AtLeast(0),
-               "", "Converged when the step is smaller (radians, metres).");
-  list->Number("initial_radius", &initial_radius, Range::Above(0), "",
-               "First radius of the trust region; 1 / damping.");
-  constexpr double kLeastRadius = 1e-32, kLargestRadius = 1e16;  // Of Ceres.
-  list->Demand(solver != "ceres" || (initial_radius >= kLeastRadius &&
-                                     initial_radius <= kLargestRadius),
-               "initial_radius", "1e-32..1e16 with solver ceres");
-  list->Switch("full_report", &full_report,
-               "Write Ceres' FullReport() of every solve.");
-}
-
-void SolverOptions::Check() const { CheckOptions(*this); }
-
-SolverReport Minimize(const SurfaceProblem& problem,
-                      const SolverOptions& options, DeformationGraph* graph) {
-  return options.solver == "ceres"
-             ? MinimizeWithCeres(problem, options, graph)
-             : MinimizeWithGaussNewton(problem, options, graph);
-}
-
-SolverReport MinimizeWithCeres(const SurfaceProblem& input,
-                               const SolverOptions& options,
-                               DeformationGraph* graph) {
-  const Stopwatch stopwatch;
-  SolverReport report;
-  CeresProblem problem(input, *graph);
-  const std::vector<double> initial = problem.TermCosts();
-  ceres::Solver::Summary summary;
-  ceres::Solve(CeresOptions(options, *graph), problem.problem(), &summary);
-  FillReport(summary, options.full_report, &report);
-  report.terms = problem.Terms(initial, problem.TermCosts());
-  if (report.usable) ComposeTwists(problem.twists(), graph);
-  report.total_seconds = stopwatch.Seconds();
-  return report;
+std::unique_ptr<Solver> MakeCeresSolver(const SolverOptions& options) {
+  return std::make_unique<CeresSolver>(options);
 }
 
 }  // namespace splitfusion

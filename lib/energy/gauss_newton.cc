@@ -40,18 +40,19 @@ std::vector<double> Moved(const std::vector<double>& twists,
 }
 
 /// A minimisation under way, about the twists reached so far.
-class GaussNewton {
+class Minimization {
  public:
   /// Evaluates the start; Usable() says whether its cost is finite.
-  GaussNewton(const SurfaceProblem& input, const SolverOptions& options,
-              const DeformationGraph& graph)
+  Minimization(const SurfaceProblem& input, const SolverOptions& options,
+               LinearSolverFactory linear, const DeformationGraph& graph)
       : options_(options),
         problem_(input, graph),
         matrix_(problem_.MakeMatrix()),
-        linear_solver_(MakeLinearSolver(options, graph)),
+        linear_solver_(linear(options, graph)),
         diagonal_(graph.size()),
         twists_(kTwistSize * graph.size(), 0.0),
-        radius_(options.initial_radius) {
+        radius_(input.initial_radius > 0 ? input.initial_radius
+                                         : options.initial_radius) {
     const bool finite = EvaluateJacobians();
     report_.usable = finite;
     report_.parameters = static_cast<int>(twists_.size());
@@ -197,18 +198,32 @@ class GaussNewton {
   SolverReport report_;
 };
 
+class GaussNewton : public Solver {
+ public:
+  GaussNewton(const SolverOptions& options, LinearSolverFactory linear)
+      : options_(options), linear_(linear) {}
+
+  SolverReport Minimize(const SurfaceProblem& problem,
+                        DeformationGraph* graph) const override {
+    const Stopwatch total;
+    Minimization minimization(problem, options_, linear_, *graph);
+    minimization.Run();
+    SolverReport report = minimization.Report();
+    if (minimization.Usable()) ComposeTwists(minimization.twists(), graph);
+    report.total_seconds = total.Seconds();
+    return report;
+  }
+
+ private:
+  SolverOptions options_;
+  LinearSolverFactory linear_;
+};
+
 }  // namespace
 
-SolverReport MinimizeWithGaussNewton(const SurfaceProblem& input,
-                                     const SolverOptions& options,
-                                     DeformationGraph* graph) {
-  const Stopwatch total;
-  GaussNewton minimization(input, options, *graph);
-  minimization.Run();
-  SolverReport report = minimization.Report();
-  if (minimization.Usable()) ComposeTwists(minimization.twists(), graph);
-  report.total_seconds = total.Seconds();
-  return report;
+std::unique_ptr<Solver> MakeGaussNewton(const SolverOptions& options,
+                                        LinearSolverFactory linear) {
+  return std::make_unique<GaussNewton>(options, linear);
 }
 
 }  // namespace splitfusion

@@ -38,9 +38,8 @@ class PcgSolver : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> MakeLinearSolver(const SolverOptions& options,
-                                               const DeformationGraph& graph) {
-  if (options.solver == "gn_cholesky") return MakeCholeskySolver();
+std::unique_ptr<LinearSolver> MakePcgSolver(const SolverOptions& options,
+                                            const DeformationGraph& graph) {
   return std::make_unique<PcgSolver>(options, graph);
 }
 

@@ -28,14 +28,25 @@ class LinearSolver {
                                std::vector<Vector6>* x) = 0;
 };
 
-/// The linear solver of gn_pcg or gn_cholesky for the twists of the graph's
-/// nodes, as they are now; `options` must outlive it.
-std::unique_ptr<LinearSolver> MakeLinearSolver(const SolverOptions& options,
-                                               const DeformationGraph& graph);
+/// Makes the linear solver of one minimisation over the twists of the graph's
+/// nodes, as they are now; the options must outlive it.
+using LinearSolverFactory = std::unique_ptr<LinearSolver> (*)(
+    const SolverOptions& options, const DeformationGraph& graph);
+
+/// Conjugate gradients, preconditioned as the options say.
+std::unique_ptr<LinearSolver> MakePcgSolver(const SolverOptions& options,
+                                            const DeformationGraph& graph);
 
 /// Supernodal Cholesky factorisation by CHOLMOD. Nodes are ordered once, for
 /// the pattern of the first matrix; later ones must have the same.
 std::unique_ptr<LinearSolver> MakeCholeskySolver();
+
+/// Levenberg-Marquardt on assembled 6x6 blocks of J^T J, whose systems `linear`
+/// solves: by preconditioned conjugate gradients gn_pcg (Eq. 7 as the paper
+/// solves it), by a factorisation gn_cholesky. Residuals, losses and damping
+/// are those of Ceres. Results do not depend on the number of threads.
+std::unique_ptr<Solver> MakeGaussNewton(const SolverOptions& options,
+                                        LinearSolverFactory linear);
 
 }  // namespace splitfusion
 

@@ -1,11 +1,13 @@
 #ifndef SPLITFUSION_LIB_ENERGY_SOLVER_H_
 #define SPLITFUSION_LIB_ENERGY_SOLVER_H_
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "splitfusion/lib/association/correspondence.h"
 #include "splitfusion/lib/base/option_list.h"
+#include "splitfusion/lib/base/registry.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/energy/solver_report.h"
 #include "splitfusion/lib/energy/term_registry.h"
@@ -17,8 +19,7 @@ struct LiveView;
 
 /// Options of the minimiser; names are Ceres' own.
 struct SolverOptions {
-  /// gn_pcg or gn_cholesky (block Gauss-Newton over the same residuals, see
-  /// MinimizeWithGaussNewton), or ceres, the reference.
+  /// A name of the SolverRegistry in use.
   std::string solver = "gn_pcg";
   /// "auto" (dense_normal_cholesky for a rigid surface, else
   /// sparse_normal_cholesky), dense_qr, dense_normal_cholesky,
@@ -68,26 +69,41 @@ struct SurfaceProblem {
   const std::vector<NodeMotion>* before = nullptr;
   /// As EnergyInput::anneal.
   double anneal = 1;
+  /// First radius of the trust region; 0 = that of the options.
+  double initial_radius = 0;
 };
 
-/// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7) and
-/// composes them onto the motions: R_i <- exp(omega_i) R_i, t_i <- t_i + tau_i.
-/// The graph is unchanged unless the report says usable.
+/// A way to minimise energies. Minimize() may run on several threads at once.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7)
+  /// and composes them onto the motions: R_i <- exp(omega_i) R_i,
+  /// t_i <- t_i + tau_i, see CollectResiduals() and ComposeTwists(). The graph
+  /// is unchanged unless the report says usable.
+  virtual SolverReport Minimize(const SurfaceProblem& problem,
+                                DeformationGraph* graph) const = 0;
+};
+
+/// Solvers by name, made for their options; a factory throws OptionError on
+/// options that its solver cannot take.
+using SolverRegistry = Registry<Solver, const SolverOptions&>;
+
+/// gn_pcg and gn_cholesky (see MakeGaussNewton()), and ceres.
+SolverRegistry BuiltinSolvers();
+
+/// One minimisation by the solver that the options name.
+///
+/// @throw OptionError if `solvers` has none of that name.
 SolverReport Minimize(const SurfaceProblem& problem,
-                      const SolverOptions& options, DeformationGraph* graph);
+                      const SolverOptions& options, DeformationGraph* graph,
+                      const SolverRegistry& solvers = BuiltinSolvers());
 
-/// The same by Ceres: the reference, with all its solvers.
-SolverReport MinimizeWithCeres(const SurfaceProblem& problem,
-                               const SolverOptions& options,
-                               DeformationGraph* graph);
-
-/// The same by Levenberg-Marquardt on assembled 6x6 blocks of J^T J, solved by
-/// preconditioned conjugate gradients (gn_pcg; Eq. 7 as the paper solves it) or
-/// by a sparse Cholesky factorisation (gn_cholesky). Residuals, losses and
-/// damping are those of Ceres. Results do not depend on the number of threads.
-SolverReport MinimizeWithGaussNewton(const SurfaceProblem& problem,
-                                     const SolverOptions& options,
-                                     DeformationGraph* graph);
+/// Ceres, with all its solvers: the reference.
+///
+/// @throw OptionError if Ceres does not take the options.
+std::unique_ptr<Solver> MakeCeresSolver(const SolverOptions& options);
 
 }  // namespace splitfusion
 

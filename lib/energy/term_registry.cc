@@ -12,14 +12,6 @@
 namespace splitfusion {
 namespace {
 
-std::string Joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    text += (text.empty() ? "" : ", ") + word;
-  }
-  return text;
-}
-
 double ParseNumber(const std::string& key, const std::string& value) {
   std::size_t used = 0;
   double number = std::nan("");
@@ -75,28 +67,6 @@ void ParseArguments(const std::string& arguments, TermOptions* options) {
 
 }  // namespace
 
-void TermRegistry::Register(const std::string& name, Factory factory) {
-  if (!factories_.emplace(name, std::move(factory)).second) {
-    throw InputError("energy term '" + name + "': already registered");
-  }
-}
-
-std::unique_ptr<EnergyTerm> TermRegistry::Create(
-    const std::string& name) const {
-  const auto found = factories_.find(name);
-  if (found == factories_.end()) {
-    throw InputError("--terms: term '" + name + "' is unknown: expected " +
-                     Joined(Names()));
-  }
-  return found->second();
-}
-
-std::vector<std::string> TermRegistry::Names() const {
-  std::vector<std::string> names;
-  for (const auto& [name, factory] : factories_) names.push_back(name);
-  return names;
-}
-
 Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
   Energy energy;
   std::size_t at = 0;
@@ -109,7 +79,7 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
     }
     WeightedTerm term;
     term.options.name = text.substr(at, end - at);
-    term.term = registry.Create(term.options.name);
+    term.term = registry.Make(term.options.name);
     if (end < text.size() && text[end] == '(') {
       const std::size_t close = text.find(')', end);
       if (close == std::string::npos) {
@@ -124,7 +94,7 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
   }
   if (energy.empty()) {
     throw InputError("--terms is empty: expected one or more of " +
-                     Joined(registry.Names()));
+                     AnyOf(registry.names()));
   }
   return energy;
 }
@@ -156,7 +126,7 @@ void SetTermOption(const std::string& key, const std::string& value,
   if (found == energy->end()) {
     WeightedTerm term;
     term.options.name = name;
-    term.term = registry.Create(name);
+    term.term = registry.Make(name);
     energy->push_back(std::move(term));
     found = energy->end() - 1;
   }

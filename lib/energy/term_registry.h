@@ -1,36 +1,18 @@
 #ifndef SPLITFUSION_LIB_ENERGY_TERM_REGISTRY_H_
 #define SPLITFUSION_LIB_ENERGY_TERM_REGISTRY_H_
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/energy/term_options.h"
+#include "splitfusion/lib/base/registry.h"
+#include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
 
-class EnergyTerm;
-
-/// Terms by name. A plain value: make one, register terms, pass it on.
-class TermRegistry {
- public:
-  /// Makes a term.
-  using Factory = std::function<std::unique_ptr<EnergyTerm>()>;
-
-  /// @throw InputError if the name is taken.
-  void Register(const std::string& name, Factory factory);
-
-  /// @throw InputError on an unknown name; lists the known ones.
-  std::unique_ptr<EnergyTerm> Create(const std::string& name) const;
-
-  /// Registered names, sorted.
-  std::vector<std::string> Names() const;
-
- private:
-  std::map<std::string, Factory> factories_;
-};
+/// Terms by name.
+using TermRegistry = Registry<EnergyTerm>;
 
 /// A term with its options.
 struct WeightedTerm {

@@ -4,7 +4,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/sequence/image_file.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 
 namespace splitfusion {
 namespace {
@@ -38,8 +38,10 @@ LiveImages::LiveImages(const RecordedRun& run)
       sequence_(run.sequence),
       filter_(run.reading.depth_filter) {
   CheckSource(run);
-  calibration_ = TumReader(run.sequence, run.reading).calibration();
-  files_ = FindAssociations(run.sequence, run.reading.association_tolerance);
+  const ImageFolderReader reader(run.sequence, run.reading, run.formats);
+  format_ = run.formats.Make(reader.options().format);
+  calibration_ = reader.calibration();
+  files_ = reader.pairs();
 }
 
 cv::Mat_<float> LiveImages::Depth(const RecordedFrame& frame) const {
@@ -54,7 +56,7 @@ cv::Mat_<float> LiveImages::Depth(const RecordedFrame& frame) const {
                      " is '" + stem + "': expected '" + frame.stem +
                      "' as in frames.jsonl");
   }
-  const cv::Mat raw = ReadDepthImage(path.string());
+  const cv::Mat raw = format_->ReadDepth(path.string());
   CheckSize(path.string(), raw.size(), camera());
   return DepthInMetres(raw, calibration_.depth_scale);
 }

@@ -1,13 +1,13 @@
 #ifndef SPLITFUSION_LIB_EVALUATION_LIVE_IMAGES_H_
 #define SPLITFUSION_LIB_EVALUATION_LIVE_IMAGES_H_
 
+#include <memory>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "splitfusion/lib/evaluation/recorded_run.h"
-#include "splitfusion/lib/sequence/association_list.h"
-#include "splitfusion/lib/sequence/calibration.h"
+#include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {
 
@@ -51,6 +51,7 @@ class LiveImages {
   std::string run_;
   std::string sequence_;
   DepthFilterOptions filter_;
+  std::shared_ptr<const SequenceFormat> format_;
   Calibration calibration_;
   std::vector<AssociatedFiles> files_;
 };

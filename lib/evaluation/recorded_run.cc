@@ -109,7 +109,9 @@ void ReadNumberFlag(const std::string& path, const std::string& name,
 void ReadSource(const fs::path& root, RecordedRun* run) {
   const std::string flags = (root / "options.flags").string();
   run->sequence = FlagValue(flags, "sequence");
-  TumReaderOptions& reading = run->reading;
+  ReaderOptions& reading = run->reading;
+  const std::string format = FlagValue(flags, "format");
+  if (!format.empty()) reading.format = format;
   ReadNumberFlag(flags, "depth_scale", &reading.depth_scale);
   ReadNumberFlag(flags, "min_depth", &reading.depth_filter.min_depth);
   ReadNumberFlag(flags, "max_depth", &reading.depth_filter.max_depth);

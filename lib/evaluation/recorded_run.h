@@ -10,8 +10,8 @@
 #include "splitfusion/lib/geometry/camera.h"
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "splitfusion/lib/sequence/trajectory.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
 
 namespace splitfusion {
 
@@ -45,8 +45,10 @@ struct RecordedRun {
   std::string sequence;
   /// How the run read the depth images of the sequence: depth scale of
   /// `calibration.txt` or `camera.txt` in the run directory, or else of
-  /// options.flags; range of options.flags; the camera as above.
-  TumReaderOptions reading;
+  /// options.flags; range and format of options.flags; the camera as above.
+  ReaderOptions reading;
+  /// What the format may be.
+  FormatRegistry formats = BuiltinFormats();
 
   /// The frame of an index; null if the run has none.
   const RecordedFrame* Find(int frame) const;

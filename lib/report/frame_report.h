@@ -40,7 +40,7 @@ struct SurfaceReport {
   double residual_rms = 0;  ///< Point-to-plane, last round, metres.
   std::vector<TrackingRound> rounds;  ///< In order of execution.
   double render_seconds = 0;          ///< Rendering of the model.
-  double associate_seconds = 0;       ///< Projective association.
+  double associate_seconds = 0;       ///< Pairs of points.
   double solve_seconds = 0;           ///< Minimisation.
   double fuse_seconds = 0;            ///< Integration into the TSDF.
   double mesh_seconds = 0;            ///< Mesh extraction and graph growth.
@@ -55,7 +55,7 @@ struct FrameReport {
   double segment_seconds = 0;    ///< Masks from files or a network.
   double split_seconds = 0;      ///< Masks to surfaces.
   double render_seconds = 0;     ///< Rendering of the models.
-  double associate_seconds = 0;  ///< Projective association.
+  double associate_seconds = 0;  ///< Pairs of points.
   double solve_seconds = 0;      ///< Minimisation.
   double fuse_seconds = 0;       ///< Integration into the TSDFs.
   double mesh_seconds = 0;       ///< Mesh extraction and graph growth.

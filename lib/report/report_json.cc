@@ -10,16 +10,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json ToJson(const AssociationCounts& counts) {
-  return {{"model_points", counts.model_points},
-          {"accepted", counts.accepted},
-          {"outside_image", counts.outside_image},
-          {"no_depth", counts.no_depth},
-          {"occluded", counts.occluded},
-          {"other_surface", counts.other_surface},
-          {"depth_edge", counts.depth_edge},
-          {"distance", counts.distance},
-          {"normal_angle", counts.normal_angle},
-          {"grazing", counts.grazing}};
+  Json json = {{"model_points", counts.model_points},
+               {"accepted", counts.accepted}};
+  for (const RejectedPoints& rejected : counts.rejected) {
+    json[rejected.reason] = rejected.count;
+  }
+  return json;
 }
 
 Json ToJson(const TermCost& term) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/base/registry.h"
 #include "splitfusion/lib/segmentation/input_placement.h"
 #include "splitfusion/lib/segmentation/network_tensor.h"
 
@@ -68,13 +69,11 @@ class NetworkDecoder {
       const DecoderOptions& options) const = 0;
 };
 
-/// Names of the decoders.
-std::vector<std::string> DecoderNames();
+/// Decoders by name.
+using DecoderRegistry = Registry<NetworkDecoder>;
 
-/// The decoder of that name.
-///
-/// @throw InputError on an unknown name; lists the known ones.
-std::unique_ptr<NetworkDecoder> MakeDecoder(const std::string& name);
+/// yolact and yolov8seg.
+DecoderRegistry BuiltinDecoders();
 
 }  // namespace splitfusion
 

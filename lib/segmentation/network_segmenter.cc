@@ -34,7 +34,7 @@ std::string Text(double value) {
 
 NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options)
     : options_(Checked(options)),
-      decoder_(MakeDecoder(options.decoder)),
+      decoder_(BuiltinDecoders().Make(options.decoder)),
       network_(options.model) {
   network_.CheckOutputs(decoder_->OutputNames());
   input_size_ = ChooseInputSize();

@@ -16,7 +16,7 @@ namespace splitfusion {
 /// Which network segments, and how its outputs are read.
 struct NetworkOptions {
   std::string model;    ///< ONNX file.
-  std::string decoder;  ///< One of DecoderNames().
+  std::string decoder;  ///< One of BuiltinDecoders().
   /// Input size, pixels; empty = that of the model, or else of the decoder.
   cv::Size input_size;
   /// Names of the network's classes in its order, without background.

@@ -1,20 +1,15 @@
-#include "splitfusion/lib/association/projective_association.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "splitfusion/lib/association/association.h"
 #include "support/expect_input_error.h"
+#include "support/rejected.h"
 #include "support/sample_depth.h"
 #include "support/sample_graphs.h"
 
 namespace splitfusion {
 namespace {
-
-int Rejected(const AssociationCounts& c) {
-  return c.outside_image + c.no_depth + c.occluded + c.other_surface +
-         c.depth_edge + c.distance + c.normal_angle + c.grazing;
-}
 
 /// A wall at 1.2 m, and model points on it at every fourth pixel.
 class AssociationTest : public ::testing::Test {
@@ -43,8 +38,9 @@ class AssociationTest : public ::testing::Test {
 
   Association Run(int surface = 0, int stride = 1) const {
     const Association association =
-        Associate(samples_, WarpField(graph_), live_,
-                  static_cast<std::uint16_t>(surface), stride, gates_);
+        BuiltinAssociations()
+            .Make("projective", live_, static_cast<std::uint16_t>(surface))
+            ->Associate(samples_, WarpField(graph_), stride, gates_);
     const AssociationCounts& counts = association.counts;
     EXPECT_EQ(counts.accepted + Rejected(counts), counts.model_points);
     EXPECT_EQ(association.correspondences.size(),
@@ -88,7 +84,7 @@ TEST_F(AssociationTest, OutsideTheImage) {
   samples_ = {Sample(200, 60, 1.2f), Sample(-9, 60, 1.2f),
               Sample(80, 130, 1.2f), Sample(80, 60, 1.2f)};
   samples_[3].point.z() = -1.2f;  // Behind the camera.
-  EXPECT_EQ(Run().counts.outside_image, 4);
+  EXPECT_EQ(Rejected(Run().counts, "outside_image"), 4);
 }
 
 TEST_F(AssociationTest, NoDepth) {
@@ -96,18 +92,18 @@ TEST_F(AssociationTest, NoDepth) {
   depth.colRange(0, 80).setTo(0);
   live_ = View(depth);
   const AssociationCounts counts = Run().counts;
-  EXPECT_GE(counts.no_depth, all() / 2);
-  EXPECT_EQ(counts.no_depth + counts.accepted, all());
+  EXPECT_GE(Rejected(counts, "no_depth"), all() / 2);
+  EXPECT_EQ(Rejected(counts, "no_depth") + counts.accepted, all());
 }
 
 TEST_F(AssociationTest, OtherSurface) {
-  EXPECT_EQ(Run(/*surface=*/3).counts.other_surface, all());
+  EXPECT_EQ(Rejected(Run(/*surface=*/3).counts, "other_surface"), all());
   live_.labels.colRange(0, 80).setTo(3);
   const AssociationCounts counts = Run(/*surface=*/3).counts;
   EXPECT_EQ(counts.accepted, all() / 2);
-  EXPECT_EQ(counts.other_surface, all() / 2);
+  EXPECT_EQ(Rejected(counts, "other_surface"), all() / 2);
   live_.uncertain.setTo(255);
-  EXPECT_EQ(Run(/*surface=*/3).counts.other_surface, all());
+  EXPECT_EQ(Rejected(Run(/*surface=*/3).counts, "other_surface"), all());
 }
 
 TEST_F(AssociationTest, WhatAnotherSurfaceHidesIsToldFromWhatLiesBeforeIt) {
@@ -116,8 +112,8 @@ TEST_F(AssociationTest, WhatAnotherSurfaceHidesIsToldFromWhatLiesBeforeIt) {
   depth.colRange(80, 160).setTo(1.5f);  // Farther.
   live_ = View(depth);
   const AssociationCounts counts = Run(/*surface=*/3).counts;
-  EXPECT_EQ(counts.occluded, all() / 2);
-  EXPECT_EQ(counts.other_surface, all() / 2);
+  EXPECT_EQ(Rejected(counts, "occluded"), all() / 2);
+  EXPECT_EQ(Rejected(counts, "other_surface"), all() / 2);
 }
 
 TEST_F(AssociationTest, DepthEdge) {
@@ -127,7 +123,7 @@ TEST_F(AssociationTest, DepthEdge) {
   samples_ = {Sample(80, 60, 1.2f), Sample(79, 60, 0.8f),
               Sample(100, 60, 1.2f)};
   const AssociationCounts counts = Run().counts;
-  EXPECT_EQ(counts.depth_edge, 2);
+  EXPECT_EQ(Rejected(counts, "depth_edge"), 2);
   EXPECT_EQ(counts.accepted, 1);
 }
 
@@ -137,7 +133,7 @@ TEST_F(AssociationTest, Distance) {
               Sample(80, 60, 1.1f), Sample(80, 60, 1.3f)};
   const AssociationCounts counts = Run().counts;
   EXPECT_EQ(counts.accepted, 2);
-  EXPECT_EQ(counts.distance, 2);
+  EXPECT_EQ(Rejected(counts, "distance"), 2);
 }
 
 TEST_F(AssociationTest, TheDistanceGateOpensWithTheNoiseOfDepth) {
@@ -147,7 +143,7 @@ TEST_F(AssociationTest, TheDistanceGateOpensWithTheNoiseOfDepth) {
               Sample(80, 60, 4.f + 4 * DepthSigma(4.f))};
   const AssociationCounts counts = Run().counts;
   EXPECT_EQ(counts.accepted, 1);
-  EXPECT_EQ(counts.distance, 1);
+  EXPECT_EQ(Rejected(counts, "distance"), 1);
 }
 
 TEST_F(AssociationTest, NormalAngle) {
@@ -157,7 +153,7 @@ TEST_F(AssociationTest, NormalAngle) {
   samples_[2].normal = {std::sin(0.6f), 0, -std::cos(0.6f)};
   const AssociationCounts counts = Run().counts;
   EXPECT_EQ(counts.accepted, 2);
-  EXPECT_EQ(counts.normal_angle, 1);
+  EXPECT_EQ(Rejected(counts, "normal_angle"), 1);
 }
 
 TEST_F(AssociationTest, Grazing) {
@@ -171,7 +167,7 @@ TEST_F(AssociationTest, Grazing) {
   }
   gates_.grazing_angle = 0.5;
   const AssociationCounts counts = Run().counts;
-  EXPECT_EQ(counts.grazing, 1);
+  EXPECT_EQ(Rejected(counts, "grazing"), 1);
   EXPECT_EQ(counts.accepted, 1);
 }
 
@@ -197,10 +193,13 @@ TEST_F(AssociationTest, EveryPointIsCountedOnceAndTheOrderIsKept) {
         Eigen::Vector3f(0.001f * (random() % 900), 0, -1).normalized();
   }
   const Association first = Run();
-  for (const int count : {first.counts.accepted, first.counts.outside_image,
-                          first.counts.no_depth, first.counts.other_surface,
-                          first.counts.depth_edge, first.counts.distance,
-                          first.counts.normal_angle}) {
+  for (const int count :
+       {first.counts.accepted, Rejected(first.counts, "outside_image"),
+        Rejected(first.counts, "no_depth"),
+        Rejected(first.counts, "other_surface"),
+        Rejected(first.counts, "depth_edge"),
+        Rejected(first.counts, "distance"),
+        Rejected(first.counts, "normal_angle")}) {
     EXPECT_GT(count, 0);
   }
   const Association second = Run();

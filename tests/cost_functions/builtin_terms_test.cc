@@ -9,10 +9,10 @@ namespace {
 
 TEST(BuiltinTerms, AreAValueToWhichOneAddsOnesOwn) {
   TermRegistry mine = BuiltinTerms();
-  mine.Register("again", [] { return BuiltinTerms().Create("arap"); });
-  EXPECT_EQ(mine.Names().size(), BuiltinTerms().Names().size() + 1);
+  mine.Register("again", [] { return BuiltinTerms().Make("arap"); });
+  EXPECT_EQ(mine.names().size(), BuiltinTerms().names().size() + 1);
   ExpectInputError([&] { mine.Register("arap", {}); },
-                   "energy term 'arap': already registered");
+                   "term 'arap': already registered");
 }
 
 }  // namespace

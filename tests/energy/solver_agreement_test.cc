@@ -38,9 +38,9 @@ TEST_P(EverySolver, FindsTheSameMinimum) {
   const Energy energy = EnergyWithCustomTerm();
   const SurfaceProblem problem{energy, correspondences, PinholeCamera()};
   DeformationGraph reference = start;
-  const double cost =
-      MinimizeWithCeres(problem, Thorough(), &reference).final_cost;
   SolverOptions options = Thorough();
+  options.solver = "ceres";
+  const double cost = Minimize(problem, options, &reference).final_cost;
   options.solver = GetParam().solver;
   options.linear_solver = GetParam().linear_solver;
   options.preconditioner = GetParam().preconditioner;

@@ -102,8 +102,9 @@ TEST(Solver, FullReportComesOnRequest) {
   const auto correspondences = PerfectAssociation(
       mesh, graph, [](const Eigen::Vector3d& p) { return p; });
   SolverOptions options;
+  options.solver = "ceres";
   options.full_report = true;
-  const SolverReport report = MinimizeWithCeres(
+  const SolverReport report = Minimize(
       {ParsedEnergy("point_to_plane"), correspondences, PinholeCamera()},
       options, &graph);
   EXPECT_NE(report.full_report.find("Solver Summary"), std::string::npos);

@@ -40,16 +40,16 @@ TEST(ParseEnergy, LeavesOutWhatHasADefault) {
 }
 
 TEST(ParseEnergy, UnknownTermsListTheKnownOnes) {
-  const std::string known = " is unknown: expected arap, color,";
-  ExpectRefused("arapp(weight=1)", "--terms: term 'arapp'" + known);
-  ExpectRefused("arap, point_to_plane", "term ''" + known);
-  ExpectRefused("arap)", "term ''" + known);
-  ExpectRefused("Arap", "term 'Arap'" + known);
+  const std::string known = ": expected point_to_plane, color,";
+  ExpectRefused("arapp(weight=1)", "term = arapp" + known);
+  ExpectRefused("arap, point_to_plane", "term = ''" + known);
+  ExpectRefused("arap)", "term = ''" + known);
+  ExpectRefused("Arap", "term = Arap" + known);
 }
 
 TEST(ParseEnergy, NothingIsNoEnergy) {
   const std::string message =
-      "--terms is empty: expected one or more of arap, color,";
+      "--terms is empty: expected one or more of point_to_plane, color,";
   ExpectRefused("", message);
   ExpectRefused(" \t\n", message);
 }

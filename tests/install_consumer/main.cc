@@ -96,8 +96,9 @@ double MotionError() {
   splitfusion::DeformationGraph graph =
       splitfusion::MakeRigidGraph(splitfusion::Rigid3d::Identity());
   splitfusion::SolverOptions options;
+  options.solver = "ceres";
   options.max_iterations = 20;
-  splitfusion::MinimizeWithCeres({energy, MovedBox(motion), Camera()}, options,
+  splitfusion::Minimize({energy, MovedBox(motion), Camera()}, options,
                                  &graph);
   const splitfusion::Rigid3d found = splitfusion::MeanRigidMotion(graph);
   return (found.matrix() - motion.matrix()).norm();

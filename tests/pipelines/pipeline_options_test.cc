@@ -40,7 +40,7 @@ TEST(PipelineOptions, RefuseValuesOutOfRange) {
 
 TEST(PipelineOptions, ThoseOfAllPartsAreChecked) {
   ExpectRefused([](PipelineOptions* o) { o->terms = "no_such_term"; },
-                "term 'no_such_term' is unknown");
+                "term = no_such_term: expected point_to_plane");
   ExpectRefused([](PipelineOptions* o) { o->object.tsdf.voxel_size = 0; },
                 "object_voxel = 0");
   ExpectRefused([](PipelineOptions* o) { o->graph.max_nodes = 0; },

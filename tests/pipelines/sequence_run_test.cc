@@ -32,8 +32,8 @@ class SequenceRunTest : public ::testing::Test {
 
   std::unique_ptr<Reconstruction> Make() const {
     return std::make_unique<Reconstruction>(
-        sequence(), TumReaderOptions(), PipelineOptions(), LabelTable(),
-        [](const TumReader&) { return nullptr; });
+        sequence(), ReaderOptions(), PipelineOptions(), LabelTable(),
+        [](const ImageFolderReader&) { return nullptr; });
   }
 
   RunSummary Execute(const SequenceRunHooks& hooks) {

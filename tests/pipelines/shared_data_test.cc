@@ -9,7 +9,7 @@
 
 #include "splitfusion/lib/evaluation/trajectory_error.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "splitfusion/pipelines/split_fusion.h"
 
 namespace splitfusion {
@@ -50,9 +50,9 @@ std::map<int, double> FitToDepth(const SplitFusion& fusion,
 }
 
 Outcome Process(const std::string& sequence) {
-  TumReaderOptions options;
+  ReaderOptions options;
   options.max_frames = kFrames;
-  TumReader reader(sequence, options);
+  ImageFolderReader reader(sequence, options);
   Outcome outcome;
   outcome.fusion = std::make_unique<SplitFusion>(
       reader.camera(), PipelineOptions(), LabelTable(),

@@ -12,6 +12,7 @@
 #include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/evaluation/trajectory_error.h"
 #include "support/expect_input_error.h"
+#include "support/rejected.h"
 #include "support/synthetic_run.h"
 
 namespace splitfusion {
@@ -65,10 +66,7 @@ void ExpectSoundReport(const FrameReport& report) {
       EXPECT_TRUE(round.stage == "rigid" || round.stage == "non_rigid");
       EXPECT_GE(round.anneal, 1);
       const AssociationCounts& c = round.association;
-      EXPECT_EQ(c.accepted + c.outside_image + c.no_depth + c.occluded +
-                    c.other_surface + c.depth_edge + c.distance +
-                    c.normal_angle + c.grazing,
-                c.model_points);
+      EXPECT_EQ(c.accepted + Rejected(c), c.model_points);
       EXPECT_TRUE(std::isfinite(round.solver.final_cost));
       EXPECT_LE(round.solver.final_cost, round.solver.initial_cost);
     }
@@ -313,18 +311,18 @@ class CountingTerm : public EnergyTerm {
 
 TEST(SplitFusion, TakesTermsOfOnesOwn) {
   const auto count = std::make_shared<int>(0);
-  TermRegistry terms = BuiltinTerms();
-  terms.Register("counting",
-                 [=] { return std::make_unique<CountingTerm>(count); });
+  Registries registries;
+  registries.terms.Register(
+      "counting", [=] { return std::make_unique<CountingTerm>(count); });
   PipelineOptions options;
   options.terms += " counting(weight=2)";
-  SyntheticRun run(SyntheticRun::Quick(), options, terms);
+  SyntheticRun run(SyntheticRun::Quick(), options, registries);
   run.Next();
   const FrameReport report = run.Next();
   EXPECT_GT(*count, 0);
   EXPECT_EQ(Find(report, 0)->rounds.at(0).solver.terms.back().term, "counting");
   ExpectInputError([&] { SyntheticRun(SyntheticRun::Quick(), options); },
-                   "term 'counting' is unknown");
+                   "term = counting: expected point_to_plane");
 }
 
 }  // namespace

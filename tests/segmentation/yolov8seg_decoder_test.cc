@@ -157,11 +157,12 @@ TEST(Yolov8SegDecoder, InputIsRgbOfUnitRangeOnGrey) {
       "input size = 640x470: expected multiples of 32");
 }
 
-TEST(MakeDecoder, KnowsBothAndNamesThem) {
-  EXPECT_EQ(MakeDecoder("yolov8seg")->OutputNames(),
+TEST(BuiltinDecoders, AreBothAndNamed) {
+  EXPECT_EQ(BuiltinDecoders().Make("yolov8seg")->OutputNames(),
             (std::vector<std::string>{"output0", "output1"}));
-  EXPECT_EQ(MakeDecoder("yolact")->DefaultInputSize(), cv::Size(550, 550));
-  ExpectInputError([] { MakeDecoder("mask_rcnn"); },
+  EXPECT_EQ(BuiltinDecoders().Make("yolact")->DefaultInputSize(),
+            cv::Size(550, 550));
+  ExpectInputError([] { BuiltinDecoders().Make("mask_rcnn"); },
                    "decoder = mask_rcnn: expected yolact or yolov8seg");
 }
 

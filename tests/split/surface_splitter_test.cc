@@ -6,7 +6,7 @@
 
 #include "split/splitter_fixture.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "support/expect_input_error.h"
 #include "support/shared_data.h"
 
@@ -294,10 +294,10 @@ TEST_F(SurfaceSplitterTest, NamesBadInput) {
 TEST(SurfaceSplitterOnData, KeepsTwoPeopleApart) {
   const std::string folder = SharedData("walking_xyz");
   SKIP_WITHOUT_SHARED_DATA(folder, "walking_xyz");
-  TumReaderOptions reader_options;
+  ReaderOptions reader_options;
   reader_options.first_frame = 44;
   reader_options.max_frames = 26;
-  TumReader reader(folder, reader_options);
+  ImageFolderReader reader(folder, reader_options);
   MaskFolderSegmenter segmenter(FindMaskFolder(folder));
   SurfaceSplitter splitter(reader.camera(), LabelTable(), {});
   double sum = 0;

@@ -47,7 +47,7 @@ SurfaceReport SampleSurface(int id, const std::string& label,
   round.anneal = 8;
   round.association.model_points = 1200;
   round.association.accepted = 1000;
-  round.association.distance = 200;
+  round.association.rejected = {{"distance", Rejection::kMisfit, 200}};
   round.solver = SampleSolver();
   surface.rounds = {round};
   return surface;

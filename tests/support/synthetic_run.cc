@@ -41,10 +41,11 @@ class SyntheticRun::Detections : public Segmenter {
 };
 
 SyntheticRun::SyntheticRun(const SyntheticOptions& scene_options,
-                           PipelineOptions options, const TermRegistry& terms)
+                           PipelineOptions options,
+                           const Registries& registries)
     : scene_(scene_options),
       options_(std::move(options)),
-      terms_(terms),
+      registries_(registries),
       detections_(std::make_shared<Detections>()) {
   const double scale = scene_options.width / 640.0;
   const auto scaled = [&](int pixels) {
@@ -57,7 +58,7 @@ SyntheticRun::SyntheticRun(const SyntheticOptions& scene_options,
 
 std::unique_ptr<SplitFusion> SyntheticRun::MakeFusion() const {
   return std::make_unique<SplitFusion>(scene_.camera(), options_, LabelTable(),
-                                       detections_, terms_);
+                                       detections_, registries_);
 }
 
 std::string SyntheticRun::State() const {

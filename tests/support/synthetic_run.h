@@ -20,7 +20,7 @@ class SyntheticRun {
   /// Thresholds in pixels hold for 640x480 and are scaled to the scene's size.
   explicit SyntheticRun(const SyntheticOptions& scene_options,
                         PipelineOptions options = {},
-                        const TermRegistry& terms = BuiltinTerms());
+                        const Registries& registries = {});
 
   /// Processes the next frame of the scene.
   FrameReport Next(const Spoil& spoil = {});
@@ -55,7 +55,7 @@ class SyntheticRun {
 
   SyntheticScene scene_;
   PipelineOptions options_;
-  TermRegistry terms_;
+  Registries registries_;
   std::shared_ptr<Detections> detections_;
   std::unique_ptr<SplitFusion> fusion_;
   SyntheticFrame frame_;

@@ -9,8 +9,8 @@
 
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "splitfusion/lib/sequence/trajectory.h"
-#include "splitfusion/lib/sequence/tum_reader.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
 #include "support/expect_input_error.h"
 #include "support/temporary_folder.h"
@@ -66,12 +66,12 @@ class SyntheticWriterTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(SyntheticWriterTest, TheSequenceReaderReadsIt) {
+TEST_F(SyntheticWriterTest, TheReaderReadsIt) {
   Write("seq");
   const SyntheticScene scene(TinyOptions());
-  TumReaderOptions options;
+  ReaderOptions options;
   options.depth_filter = {};
-  TumReader reader(folder_ / "seq", options);
+  ImageFolderReader reader(folder_ / "seq", options);
   ASSERT_EQ(reader.size(), 4);
   EXPECT_NEAR(reader.camera().fx, scene.camera().fx, 1e-9);
   EXPECT_NEAR(reader.camera().cy, scene.camera().cy, 1e-9);
@@ -260,7 +260,7 @@ TEST_F(SyntheticWriterTest, OverwritingKeepsFilesOfOthers) {
   EXPECT_EQ(kept, (std::vector<std::string>{"masks/0.png", "notes.txt"}));
   EXPECT_EQ(folder_.Read("seq/notes.txt"), "mine");
   EXPECT_EQ(folder_.Read("seq/masks/0.png"), "drawn by hand");
-  EXPECT_EQ(TumReader(folder_ / "seq").size(), 2);
+  EXPECT_EQ(ImageFolderReader(folder_ / "seq").size(), 2);
   EXPECT_EQ(EntryCount(folder_ / "seq/rgb"), 2u) << "old frames are gone";
   EXPECT_EQ(EntryCount(folder_ / ""), 1u);
 }
@@ -285,7 +285,7 @@ TEST_F(SyntheticWriterTest, AFileOfOthersUnderANewNameIsNotOverwritten) {
   ExpectInputError([&] { Write("seq", /*overwrite=*/true); },
                    ".png: not overwritten, for sf_synth did not write it");
   EXPECT_EQ(folder_.Read(later), "mine");
-  EXPECT_EQ(TumReader(folder_ / "seq").size(), 2);
+  EXPECT_EQ(ImageFolderReader(folder_ / "seq").size(), 2);
   EXPECT_EQ(EntryCount(folder_ / ""), 1u);
 }
 

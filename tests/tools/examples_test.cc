@@ -47,8 +47,11 @@ TEST(Examples, CustomEnergyTerm) {
 
 TEST(Examples, CustomDataSet) {
   SKIP_WITHOUT("03_custom_data_set");
-  EXPECT_THAT(RunExample("03_custom_data_set").output,
-              HasSubstr("mesh of the room"));
+  const TemporaryFolder folder;
+  const std::string output =
+      RunExample("03_custom_data_set", folder / "room").output;
+  EXPECT_THAT(output, HasSubstr("15 frames, format room"));
+  EXPECT_THAT(output, HasSubstr("mesh of the room"));
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST_F(FlagMessages, NameTheTermsAndWhatIsWrongInThem) {
   RunRefuses("--terms='arap(loss=none)'",
              "--terms: loss = none: expected trivial, huber,");
   RunRefuses("--terms='arap(wait=1)'", "--terms: key 'wait' of term 'arap'");
-  RunRefuses("--terms=arab", "--terms: term 'arab' is unknown: expected arap");
+  RunRefuses("--terms=arab", "--terms: term = arab: expected point_to_plane");
   RunRefuses("--terms=", "--terms is empty: expected one or more of arap");
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "splitfusion/lib/geometry/triangle_mesh.h"
@@ -224,7 +225,10 @@ TEST_F(SfRun, BadOptionsEndWithTwoAndLeaveNothing) {
     ExpectRefused("sf_run", start + option, text);
   };
   refused("--preset=fusion", "--preset = fusion: expected background_only");
-  refused("--terms=arapp", "term 'arapp' is unknown: expected arap");
+  refused("--solver=lm", "--solver = lm: expected gn_pcg");
+  refused("--association=flow", "--association = flow: expected projective");
+  refused("--format=scannet", "--format = scannet: expected tum");
+  refused("--terms=arapp", "term = arapp: expected point_to_plane");
   refused("--linear_solver=lu", "--linear_solver = lu: expected auto");
   refused("--object_voxel=0", "--object_voxel = 0: expected 0.001..1");
   refused("--mask_kind=soft", "--mask_kind = soft: expected rigid");
@@ -233,6 +237,40 @@ TEST_F(SfRun, BadOptionsEndWithTwoAndLeaveNothing) {
   refused("--intrinsics=50,50,32,24,64,48,9", "9: expected fx,fy,cx,cy");
   refused("--max_frames=-1", "--max_frames = -1");
   EXPECT_FALSE(folder_.Has("run"));
+}
+
+TEST_F(SfRun, TheSameImagesInAnotherFormatAreTheSameRun) {
+  Synthesize();
+  int index = 0;
+  std::set<fs::path> images;
+  for (const auto& entry : fs::directory_iterator(folder_ / "sequence/rgb")) {
+    images.insert(entry.path().filename());
+  }
+  folder_.Make("scene");
+  for (const fs::path& image : images) {
+    const std::string stem =
+        folder_ / ("scene/frame-00000" + std::to_string(index++));
+    fs::copy(folder_ / "sequence/rgb" / image, stem + ".color.png");
+    fs::copy(folder_ / "sequence/depth" / image, stem + ".depth.png");
+  }
+  fs::copy(folder_ / "sequence/calibration.txt",
+           folder_ / "scene/calibration.txt");
+  EXPECT_EQ(Run("tum", "--masks=none").exit_code, 0);
+  const ProgramResult result =
+      RunProgram("sf_run", "--masks=none --sequence=" + (folder_ / "scene") +
+                               " --output=" + (folder_ / "scenes"));
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  const std::string motions = "/surfaces/000_background/motions.bin";
+  EXPECT_FALSE(folder_.Read("tum" + motions).empty());
+  EXPECT_EQ(folder_.Read("tum" + motions), folder_.Read("scenes" + motions));
+  EXPECT_THAT(folder_.Read("tum/options.flags"), HasSubstr("--format=tum\n"));
+  EXPECT_THAT(folder_.Read("scenes/options.flags"),
+              HasSubstr("--format=7scenes\n"));
+  // Live depth is read by the same format.
+  const ProgramResult evaluated =
+      RunProgram("sf_evaluate", "--run=" + (folder_ / "scenes"));
+  EXPECT_EQ(evaluated.exit_code, 0) << evaluated.errors;
+  EXPECT_THAT(folder_.Read("scenes/evaluation.json"), HasSubstr("depth"));
 }
 
 TEST_F(SfRun, WarnsOnceOfEveryGraphThatIsCoarserThanPlanned) {

@@ -230,7 +230,7 @@ MeasuredSystem::MeasuredSystem(const EnergyScene& scene)
     blocks.Evaluate(twists, /*with_jacobians=*/true);
     blocks.Assemble(&matrix, &gradient);
     damped = Damped(matrix, radius);
-    solution = MakeLinearSolver(options, scene.graph)
+    solution = MakePcgSolver(options, scene.graph)
                    ->Solve(damped, Negative(gradient), &step);
     if (i == EnergyScene::kIterations) return;
     for (int k = 0; k < 6 * scene.graph.size(); ++k) {

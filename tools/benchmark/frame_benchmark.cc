@@ -12,7 +12,7 @@
 
 #include "fusion_scenes.h"
 #include "splitfusion/cost_functions/builtin_terms.h"
-#include "splitfusion/lib/association/projective_association.h"
+#include "splitfusion/lib/association/association.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/geometry/point_map.h"
@@ -58,7 +58,8 @@ void AssociateRoom(benchmark::State& state) {
       RoomSamples(tracked.fusion, tracked.scene.camera(), kStride);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        Associate(samples, warp, tracked.live, 0, kStride, AssociationGates()));
+        MakeProjectiveAssociator(tracked.live, 0)
+            ->Associate(samples, warp, kStride, AssociationGates()));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 
 #include <tbb/parallel_for.h>
 
@@ -16,12 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The calibration file's values, each replaced by the option if given.
+/// The values that the format finds, each replaced by the option if given.
 Calibration ResolveCalibration(const std::string& folder,
-                               const TumReaderOptions& options) {
+                               const SequenceFormat& format,
+                               const ReaderOptions& options) {
   const bool complete = options.camera && options.depth_scale > 0;
   std::optional<Calibration> file;
-  if (!complete) file = FindCalibration(folder);
+  if (!complete) file = format.FindCalibration(folder);
   if (!complete && !file) {
     throw InputError(folder +
                      ": neither calibration.txt nor camera.txt found: expected "
@@ -49,7 +50,7 @@ void CheckSize(const std::string& path,
 }
 
 std::vector<AssociatedFiles> SelectFrames(std::vector<AssociatedFiles> pairs,
-                                          const TumReaderOptions& options) {
+                                          const ReaderOptions& options) {
   const int count = static_cast<int>(pairs.size());
   CheckOption(
       options.first_frame < count, "first_frame", options.first_frame,
@@ -64,27 +65,27 @@ std::vector<AssociatedFiles> SelectFrames(std::vector<AssociatedFiles> pairs,
 
 }  // namespace
 
-void TumReaderOptions::Check() const {
+void ReaderOptions::Check() const {
   CheckOption(first_frame >= 0, "first_frame", first_frame, "an index >= 0");
   CheckOption(max_frames >= 0, "max_frames", max_frames,
               "a number > 0, or 0 for all");
-  CheckOption(
-      std::isfinite(association_tolerance) && association_tolerance >= 0,
-      "association_tolerance", association_tolerance, "seconds >= 0");
   CheckOption(std::isfinite(depth_scale) && depth_scale >= 0, "depth_scale",
               depth_scale, "units per metre > 0, or 0 for the file's");
   if (camera) camera->Check();
   depth_filter.Check();
 }
 
-TumReader::TumReader(const std::string& folder, TumReaderOptions options)
+ImageFolderReader::ImageFolderReader(const std::string& folder,
+                                     ReaderOptions options,
+                                     const FormatRegistry& formats)
     : folder_(folder), options_(std::move(options)) {
   options_.Check();
-  pairs_ = SelectFrames(
-      FindAssociations(folder_, options_.association_tolerance), options_);
+  options_.format = ResolveFormat(options_.format, folder_, formats);
+  format_ = formats.Make(options_.format);
+  pairs_ = SelectFrames(format_->FindFrames(folder_), options_);
   indices_.resize(pairs_.size());
   std::iota(indices_.begin(), indices_.end(), options_.first_frame);
-  calibration_ = ResolveCalibration(folder_, options_);
+  calibration_ = ResolveCalibration(folder_, *format_, options_);
   if (!options_.skip_bad_frames) return;
   for (const BadFrame& bad : FindBadFrames()) {
     const auto at = std::find(indices_.begin(), indices_.end(), bad.index);
@@ -96,28 +97,28 @@ TumReader::TumReader(const std::string& folder, TumReaderOptions options)
                    " frames can be read)");
 }
 
-int TumReader::size() const {
+int ImageFolderReader::size() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return static_cast<int>(pairs_.size());
 }
 
-std::vector<BadFrame> TumReader::skipped() const {
+std::vector<BadFrame> ImageFolderReader::skipped() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return skipped_;
 }
 
-cv::Size TumReader::ExpectedSize() const {
+cv::Size ImageFolderReader::ExpectedSize() const {
   return {camera().width, camera().height};
 }
 
-void TumReader::CheckFiles(int i) const {
+void ImageFolderReader::CheckFiles(int i) const {
   const std::string color = (fs::path(folder_) / pairs_[i].color.file).string();
   const std::string depth = (fs::path(folder_) / pairs_[i].depth.file).string();
   CheckSize(color, ReadImageHeader(color), ExpectedSize());
   CheckSize(depth, ReadDepthHeader(depth), ExpectedSize());
 }
 
-std::vector<BadFrame> TumReader::FindBadFrames() const {
+std::vector<BadFrame> ImageFolderReader::FindBadFrames() const {
   std::vector<std::string> reasons(pairs_.size());
   tbb::parallel_for(0, static_cast<int>(pairs_.size()), [&](int i) {
     try {
@@ -134,7 +135,7 @@ std::vector<BadFrame> TumReader::FindBadFrames() const {
   return bad;
 }
 
-void TumReader::CheckFrames() const {
+void ImageFolderReader::CheckFrames() const {
   const std::vector<BadFrame> bad = FindBadFrames();
   if (bad.empty()) return;
   throw InputError(
@@ -144,7 +145,7 @@ void TumReader::CheckFrames() const {
            : " (and " + std::to_string(bad.size() - 1) + " more bad frames)"));
 }
 
-void TumReader::Skip(int i, const std::string& reason) {
+void ImageFolderReader::Skip(int i, const std::string& reason) {
   BadFrame bad{indices_[i], Stem(i), reason};
   const std::lock_guard<std::mutex> lock(mutex_);
   pairs_.erase(pairs_.begin() + i);
@@ -155,15 +156,15 @@ void TumReader::Skip(int i, const std::string& reason) {
   skipped_.insert(after, std::move(bad));
 }
 
-std::string TumReader::Stem(int i) const {
+std::string ImageFolderReader::Stem(int i) const {
   return fs::path(pairs_.at(i).depth.file).stem().string();
 }
 
-std::string TumReader::ColorStem(int i) const {
+std::string ImageFolderReader::ColorStem(int i) const {
   return fs::path(pairs_.at(i).color.file).stem().string();
 }
 
-Frame TumReader::Read(int i) const {
+Frame ImageFolderReader::Read(int i) const {
   CheckFiles(i);
   const AssociatedFiles& pair = pairs_[i];
   const fs::path color_path = fs::path(folder_) / pair.color.file;
@@ -173,9 +174,9 @@ Frame TumReader::Read(int i) const {
   frame.timestamp = pair.depth.timestamp;
   frame.stem = depth_path.stem().string();
   frame.color_stem = color_path.stem().string();
-  frame.color = ReadColorImage(color_path.string());
+  frame.color = format_->ReadColor(color_path.string());
   CheckSize(color_path.string(), frame.color.size(), ExpectedSize());
-  const cv::Mat raw = ReadDepthImage(depth_path.string());
+  const cv::Mat raw = format_->ReadDepth(depth_path.string());
   CheckSize(depth_path.string(), raw.size(), ExpectedSize());
   frame.depth = FilterDepth(DepthInMetres(raw, calibration_.depth_scale),
                             options_.depth_filter);
@@ -183,7 +184,7 @@ Frame TumReader::Read(int i) const {
 }
 
 /// Empty if the frame is left out.
-std::optional<Frame> TumReader::ReadOrSkip() {
+std::optional<Frame> ImageFolderReader::ReadOrSkip() {
   try {
     return Read(next_);
   } catch (const InputError& error) {
@@ -193,7 +194,7 @@ std::optional<Frame> TumReader::ReadOrSkip() {
   }
 }
 
-void TumReader::SkipTo(int i) {
+void ImageFolderReader::SkipTo(int i) {
   if (options_.skip_bad_frames) {
     while (next_ < i && Next()) {
     }
@@ -201,7 +202,7 @@ void TumReader::SkipTo(int i) {
   next_ = i;
 }
 
-std::optional<Frame> TumReader::Next() {
+std::optional<Frame> ImageFolderReader::Next() {
   std::optional<Frame> frame;
   while (!frame && next_ < size()) frame = ReadOrSkip();
   if (frame) ++next_;

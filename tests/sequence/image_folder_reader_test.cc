@@ -1,4 +1,4 @@
-#include "splitfusion/lib/sequence/tum_reader.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace splitfusion {
 namespace {
 
 /// Three frames of 32x24 pixels; depth 1, 2 and 3 m.
-class TumReaderTest : public testing::Test {
+class ImageFolderReaderTest : public testing::Test {
  protected:
   void SetUp() override {
     std::string list;
@@ -39,15 +39,15 @@ class TumReaderTest : public testing::Test {
   }
   /// Expects that the first frame is refused.
   void ExpectRefused(const std::string& part) {
-    TumReader reader(folder_ / "");
+    ImageFolderReader reader(folder_ / "");
     ExpectInputError([&] { reader.Next(); }, part);
   }
 
   TemporaryFolder folder_;
 };
 
-TEST_F(TumReaderTest, GivesFramesInOrder) {
-  TumReader reader(folder_ / "");
+TEST_F(ImageFolderReaderTest, GivesFramesInOrder) {
+  ImageFolderReader reader(folder_ / "");
   EXPECT_EQ(reader.size(), 3);
   EXPECT_EQ(reader.camera().width, 32);
   EXPECT_DOUBLE_EQ(reader.camera().fy, 31);
@@ -63,29 +63,30 @@ TEST_F(TumReaderTest, GivesFramesInOrder) {
   EXPECT_FALSE(reader.Next().has_value());
 }
 
-TEST_F(TumReaderTest, ReadsAPartUnderItsOwnIndices) {
-  TumReaderOptions options;
+TEST_F(ImageFolderReaderTest, ReadsAPartUnderItsOwnIndices) {
+  ReaderOptions options;
   options.first_frame = 1;
   options.max_frames = 1;
-  TumReader reader(folder_ / "", options);
+  ImageFolderReader reader(folder_ / "", options);
   EXPECT_EQ(reader.size(), 1);
   EXPECT_EQ(reader.Next()->index, 1);
   EXPECT_FALSE(reader.Next().has_value());
 }
 
-TEST_F(TumReaderTest, OptionsReplaceTheCalibrationFile) {
-  TumReaderOptions options;
+TEST_F(ImageFolderReaderTest, OptionsReplaceTheCalibrationFile) {
+  ReaderOptions options;
   options.depth_scale = 500;
-  EXPECT_FLOAT_EQ(TumReader(folder_ / "", options).Next()->depth.at<float>(0),
-                  2.0f);
+  EXPECT_FLOAT_EQ(
+      ImageFolderReader(folder_ / "", options).Next()->depth.at<float>(0),
+      2.0f);
   options.camera = PinholeCamera{32, 24, 40, 40, 15, 11};
   std::filesystem::remove(folder_ / "calibration.txt");
-  EXPECT_DOUBLE_EQ(TumReader(folder_ / "", options).camera().fx, 40);
-  ExpectInputError([&] { TumReader reader(folder_ / ""); },
+  EXPECT_DOUBLE_EQ(ImageFolderReader(folder_ / "", options).camera().fx, 40);
+  ExpectInputError([&] { ImageFolderReader reader(folder_ / ""); },
                    "neither calibration.txt nor camera.txt");
 }
 
-TEST_F(TumReaderTest, NamesMissingAndBrokenImages) {
+TEST_F(ImageFolderReaderTest, NamesMissingAndBrokenImages) {
   std::filesystem::resize_file(DepthPath(0), 60);
   ExpectRefused("d0.png: 60 bytes that are no image or a truncated one");
   std::filesystem::resize_file(DepthPath(0), 0);
@@ -94,7 +95,7 @@ TEST_F(TumReaderTest, NamesMissingAndBrokenImages) {
   ExpectRefused("d0.png: cannot be opened");
 }
 
-TEST_F(TumReaderTest, NamesWrongSizesAndTypes) {
+TEST_F(ImageFolderReaderTest, NamesWrongSizesAndTypes) {
   WriteDepth(0, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1000)));
   ExpectRefused("d0.png: image of 16x12: expected 32x24");
   WriteDepth(0, cv::Mat(24, 32, CV_8UC1, cv::Scalar(100)));
@@ -103,23 +104,23 @@ TEST_F(TumReaderTest, NamesWrongSizesAndTypes) {
   ExpectRefused("c0.png: image of 32x30");
 }
 
-TEST_F(TumReaderTest, RefusesTruncatedJpeg) {
+TEST_F(ImageFolderReaderTest, RefusesTruncatedJpeg) {
   const std::string path = folder_ / "rgb/c0.jpg";
   cv::Mat noise(24, 32, CV_8UC3);
   cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 255);
   cv::imwrite(path, noise);
   folder_.Write("associations.txt", "0 rgb/c0.jpg 0 depth/d0.png\n");
-  EXPECT_TRUE(TumReader(folder_ / "").Next().has_value());
+  EXPECT_TRUE(ImageFolderReader(folder_ / "").Next().has_value());
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   ExpectRefused("c0.jpg");
 }
 
-TEST_F(TumReaderTest, AllFramesAreLookedAtBeforeTheFirst) {
-  EXPECT_TRUE(TumReader(folder_ / "").FindBadFrames().empty());
-  EXPECT_NO_THROW(TumReader(folder_ / "").CheckFrames());
+TEST_F(ImageFolderReaderTest, AllFramesAreLookedAtBeforeTheFirst) {
+  EXPECT_TRUE(ImageFolderReader(folder_ / "").FindBadFrames().empty());
+  EXPECT_NO_THROW(ImageFolderReader(folder_ / "").CheckFrames());
   std::filesystem::remove(folder_ / "rgb/c1.png");
   WriteDepth(2, cv::Mat(24, 32, CV_8UC1, cv::Scalar(100)));
-  const TumReader reader(folder_ / "");
+  const ImageFolderReader reader(folder_ / "");
   const std::vector<BadFrame> bad = reader.FindBadFrames();
   ASSERT_EQ(bad.size(), 2u);
   EXPECT_EQ(bad[0].index, 1);
@@ -129,17 +130,17 @@ TEST_F(TumReaderTest, AllFramesAreLookedAtBeforeTheFirst) {
   EXPECT_NE(bad[1].reason.find("d2.png: image of 8 bit"), std::string::npos);
   ExpectInputError([&] { reader.CheckFrames(); },
                    "(no such file) (and 1 more bad frames)");
-  TumReaderOptions options;
+  ReaderOptions options;
   options.max_frames = 1;
-  EXPECT_NO_THROW(TumReader(folder_ / "", options).CheckFrames())
+  EXPECT_NO_THROW(ImageFolderReader(folder_ / "", options).CheckFrames())
       << "frames that are not read";
 }
 
-TEST_F(TumReaderTest, BadFramesAreLeftOutIfAskedFor) {
+TEST_F(ImageFolderReaderTest, BadFramesAreLeftOutIfAskedFor) {
   std::filesystem::resize_file(DepthPath(1), 60);
-  TumReaderOptions options;
+  ReaderOptions options;
   options.skip_bad_frames = true;
-  TumReader reader(folder_ / "", options);
+  ImageFolderReader reader(folder_ / "", options);
   EXPECT_EQ(reader.size(), 2);
   EXPECT_EQ(reader.Stem(1), "d2");
   EXPECT_NO_THROW(reader.CheckFrames());
@@ -159,11 +160,11 @@ void Damage(const std::string& path) {
   stream << "XXXXXXXX";
 }
 
-TEST_F(TumReaderTest, FramesThatCannotBeDecodedAreLeftOutIfAskedFor) {
+TEST_F(ImageFolderReaderTest, FramesThatCannotBeDecodedAreLeftOutIfAskedFor) {
   Damage(DepthPath(0));
-  TumReaderOptions options;
+  ReaderOptions options;
   options.skip_bad_frames = true;
-  TumReader reader(folder_ / "", options);
+  ImageFolderReader reader(folder_ / "", options);
   EXPECT_EQ(reader.size(), 3);
   EXPECT_EQ(reader.Next()->index, 1);
   EXPECT_EQ(reader.size(), 2);
@@ -173,38 +174,38 @@ TEST_F(TumReaderTest, FramesThatCannotBeDecodedAreLeftOutIfAskedFor) {
   EXPECT_EQ(reader.Next()->index, 2);
   EXPECT_FALSE(reader.Next().has_value());
   // Going on counts the frames that could be read.
-  TumReader resumed(folder_ / "", options);
+  ImageFolderReader resumed(folder_ / "", options);
   resumed.SkipTo(1);
   EXPECT_EQ(resumed.Next()->index, 2);
   EXPECT_FALSE(resumed.Next().has_value());
   EXPECT_EQ(resumed.size(), 2);
 }
 
-TEST_F(TumReaderTest, NoFrameAtAllIsAnError) {
+TEST_F(ImageFolderReaderTest, NoFrameAtAllIsAnError) {
   for (int i = 0; i < 3; ++i) std::filesystem::remove(DepthPath(i));
-  TumReaderOptions options;
+  ReaderOptions options;
   options.skip_bad_frames = true;
-  ExpectInputError([&] { TumReader reader(folder_ / "", options); },
+  ExpectInputError([&] { ImageFolderReader reader(folder_ / "", options); },
                    "d0.png: cannot be opened (no such file) (and none of the "
                    "other 2 frames can be read)");
 }
 
-TEST_F(TumReaderTest, NamesBadOptions) {
-  TumReaderOptions options;
+TEST_F(ImageFolderReaderTest, NamesBadOptions) {
+  ReaderOptions options;
   options.first_frame = 3;
-  ExpectInputError([&] { TumReader reader(folder_ / "", options); },
+  ExpectInputError([&] { ImageFolderReader reader(folder_ / "", options); },
                    "first_frame = 3: expected less than the 3 frames");
   options = {};
   options.max_frames = -1;
-  ExpectInputError([&] { TumReader reader(folder_ / "", options); },
+  ExpectInputError([&] { ImageFolderReader reader(folder_ / "", options); },
                    "max_frames = -1");
 }
 
-TEST(TumReader, ReadsSharedSequences) {
+TEST(ImageFolderReader, ReadsSharedSequences) {
   for (const char* name : {"walking_xyz", "snoopy", "tum_fr1_rpy"}) {
     const std::string path = SharedData(name);
     SKIP_WITHOUT_SHARED_DATA(path, name);
-    TumReader reader(path);
+    ImageFolderReader reader(path);
     EXPECT_GE(reader.size(), 60);
     const std::optional<Frame> frame = reader.Next();
     EXPECT_EQ(frame->depth.size(), cv::Size(640, 480));

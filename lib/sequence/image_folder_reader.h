@@ -1,6 +1,7 @@
-#ifndef SPLITFUSION_LIB_SEQUENCE_TUM_READER_H_
-#define SPLITFUSION_LIB_SEQUENCE_TUM_READER_H_
+#ifndef SPLITFUSION_LIB_SEQUENCE_IMAGE_FOLDER_READER_H_
+#define SPLITFUSION_LIB_SEQUENCE_IMAGE_FOLDER_READER_H_
 
+#include <memory>
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -8,23 +9,20 @@
 #include <vector>
 
 #include "splitfusion/lib/geometry/camera.h"
-#include "splitfusion/lib/sequence/association_list.h"
-#include "splitfusion/lib/sequence/calibration.h"
 #include "splitfusion/lib/sequence/depth_filter.h"
-#include "splitfusion/lib/sequence/sequence_reader.h"
+#include "splitfusion/lib/sequence/frame.h"
+#include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {
 
-/// How a sequence in TUM layout is read.
-struct TumReaderOptions {
-  int first_frame = 0;  ///< Frames before it are skipped; indices stay.
-  int max_frames = 0;   ///< Frames read at most; 0 = all.
-  /// Largest difference of time stamps, seconds; only without
-  /// `associations.txt`.
-  double association_tolerance = 0.02;
-  /// Replaces the intrinsics of `calibration.txt` or `camera.txt`.
+/// How a sequence is read.
+struct ReaderOptions {
+  std::string format = "auto";  ///< See ResolveFormat().
+  int first_frame = 0;          ///< Frames before it are skipped; indices stay.
+  int max_frames = 0;           ///< Frames read at most; 0 = all.
+  /// Replaces the intrinsics that the format finds.
   std::optional<PinholeCamera> camera;
-  /// Units a metre; replaces that of the file; 0 = as the file says.
+  /// Units a metre; replaces what the format finds; 0 = that.
   double depth_scale = 0;
   DepthFilterOptions depth_filter;  ///< Applied to every depth image.
   /// Frames whose images are missing or broken are left out; indices stay.
@@ -41,23 +39,28 @@ struct BadFrame {
   std::string reason;  ///< One line that names the file.
 };
 
-/// Reads a sequence in TUM RGB-D layout: `associations.txt`, or else `rgb.txt`
-/// and `depth.txt` paired by time stamp; colour png or jpg; depth 16-bit PNG,
-/// registered to the colour; intrinsics from `calibration.txt`, `camera.txt`
-/// or the options.
-class TumReader : public SequenceReader {
+/// Reads a sequence of image files, laid out in one of the known formats.
+class ImageFolderReader {
  public:
-  /// Reads the lists and the calibration of `folder`; images are read one by
-  /// one in Next(). With `skip_bad_frames` FindBadFrames() are left out.
+  /// Finds frames and calibration of `folder`; images are read one by one in
+  /// Next(). With `skip_bad_frames` FindBadFrames() are left out. `formats`:
+  /// what the options may name, not kept.
   ///
-  /// @throw InputError if a list or the calibration is missing or broken, or
-  ///     if no frame is left.
-  explicit TumReader(const std::string& folder, TumReaderOptions options = {});
+  /// @throw InputError if the format is not known, if a list or the calibration
+  ///     is missing or broken, or if no frame is left.
+  explicit ImageFolderReader(const std::string& folder,
+                             ReaderOptions options = {},
+                             const FormatRegistry& formats = BuiltinFormats());
 
-  const PinholeCamera& camera() const override { return calibration_.camera; }
-  /// Fewer if `skip_bad_frames` and images turn out to be broken in Next().
-  int size() const override;
-  std::optional<Frame> Next() override;
+  /// Intrinsics of every frame.
+  const PinholeCamera& camera() const { return calibration_.camera; }
+  /// Number of frames that Next() gives in all; fewer if `skip_bad_frames` and
+  /// images turn out to be broken in Next().
+  int size() const;
+  /// The next frame in order of time; empty after the last one.
+  ///
+  /// @throw InputError on a missing or broken image; names the file.
+  std::optional<Frame> Next();
 
   /// Looks at the files of all frames, without decoding them: that they are
   /// there, whole as far as their headers and ends show, and of the right size
@@ -88,8 +91,8 @@ class TumReader : public SequenceReader {
 
   /// The sequence, as it was given.
   const std::string& folder() const { return folder_; }
-  /// How it is read, as it was given.
-  const TumReaderOptions& options() const { return options_; }
+  /// How it is read, as it was given, but for the format that "auto" found.
+  const ReaderOptions& options() const { return options_; }
   /// Intrinsics and depth scale in use.
   const Calibration& calibration() const { return calibration_; }
 
@@ -103,7 +106,8 @@ class TumReader : public SequenceReader {
   void Skip(int i, const std::string& reason);
 
   std::string folder_;
-  TumReaderOptions options_;
+  ReaderOptions options_;
+  std::shared_ptr<const SequenceFormat> format_;
   Calibration calibration_;
   std::vector<AssociatedFiles> pairs_;  // Frames to be read.
   std::vector<int> indices_;            // Of pairs_, in the sequence.
@@ -114,4 +118,4 @@ class TumReader : public SequenceReader {
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_SEQUENCE_TUM_READER_H_
+#endif  // SPLITFUSION_LIB_SEQUENCE_IMAGE_FOLDER_READER_H_

@@ -1,0 +1,66 @@
+#ifndef SPLITFUSION_LIB_ASSOCIATION_ASSOCIATION_H_
+#define SPLITFUSION_LIB_ASSOCIATION_ASSOCIATION_H_
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "splitfusion/lib/association/association_counts.h"
+#include "splitfusion/lib/association/correspondence.h"
+#include "splitfusion/lib/frame/live_view.h"
+#include "splitfusion/lib/base/registry.h"
+
+namespace splitfusion {
+
+/// When a model point and a live point are taken for the same.
+struct AssociationGates {
+  double distance = 0.10;       ///< Metres; grows with the depth noise.
+  double normal_angle = 0.52;   ///< Radians between the normals.
+  double grazing_angle = 1.31;  ///< Radians between live normal and view ray.
+  bool coarse_color = false;    ///< Compare colours at the coarse level.
+};
+
+/// Result of one association.
+struct Association {
+  std::vector<Correspondence> correspondences;  ///< In order of the samples.
+  /// What became of every sample.
+  AssociationCounts counts;
+};
+
+/// Finds the pairs of model and live points of one surface in one frame (set
+/// Omega of SplitFusion Eq. 5), again in every round of tracking.
+class Associator {
+ public:
+  virtual ~Associator() = default;
+
+  /// Pairs the samples under the current warp with live points. `stride`: only
+  /// samples rendered at every stride-th row and column of the full image are
+  /// used. Every sample that is rejected is counted under its reason. Does not
+  /// depend on the number of threads.
+  virtual Association Associate(const std::vector<ModelSample>& samples,
+                                const WarpField& warp, int stride,
+                                const AssociationGates& gates) const = 0;
+};
+
+/// Associations by name, made for a live frame, which outlives them, and the id
+/// of the surface whose live pixels count.
+using AssociationRegistry =
+    Registry<Associator, const LiveView&, std::uint16_t>;
+
+/// projective and closest_point.
+AssociationRegistry BuiltinAssociations();
+
+/// Projects every warped sample into the live image and takes the live point of
+/// that pixel.
+std::unique_ptr<Associator> MakeProjectiveAssociator(const LiveView& live,
+                                                     std::uint16_t surface);
+
+/// Takes for every warped sample the live point of the surface that is nearest
+/// in space, wherever it projects to: the closest point of Besl and McKay
+/// (1992). What is hidden shows by its distance alone.
+std::unique_ptr<Associator> MakeClosestPointAssociator(const LiveView& live,
+                                                       std::uint16_t surface);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ASSOCIATION_ASSOCIATION_H_

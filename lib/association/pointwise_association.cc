@@ -1,0 +1,149 @@
+#include "splitfusion/lib/association/pointwise_association.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace splitfusion {
+namespace {
+
+Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
+
+/// Takes the median difference of grey values, a change of exposure, out.
+void RemoveCommonBrightness(std::vector<Correspondence>* correspondences) {
+  if (correspondences->empty()) return;
+  std::vector<float> differences;
+  differences.reserve(correspondences->size());
+  for (const Correspondence& c : *correspondences) {
+    differences.push_back(c.intensity_difference);
+  }
+  const auto middle = differences.begin() + differences.size() / 2;
+  std::nth_element(differences.begin(), middle, differences.end());
+  for (Correspondence& c : *correspondences) c.intensity_difference -= *middle;
+}
+
+}  // namespace
+
+/// AssociationGates as they are compared with.
+struct PointwiseAssociator::Gates {
+  explicit Gates(const AssociationGates& gates)
+      : distance(static_cast<float>(gates.distance)),
+        min_normal_cosine(static_cast<float>(std::cos(gates.normal_angle))),
+        min_view_cosine(static_cast<float>(std::cos(gates.grazing_angle))),
+        color_level(gates.coarse_color ? 1 : 0) {}
+
+  float distance;           // Metres.
+  float min_normal_cosine;  // Between the normals.
+  float min_view_cosine;    // Between live normal and view ray.
+  int color_level;          // Of LiveView::grey.
+};
+
+PointwiseAssociator::PointwiseAssociator(const LiveView& live,
+                                         std::vector<Outcome> outcomes)
+    : live_(live), outcomes_(std::move(outcomes)) {
+  outcomes_.insert(outcomes_.end(), {kDistance, kNormalAngle, kGrazing});
+}
+
+RejectedPoints PointwiseAssociator::Row(Outcome outcome) {
+  switch (outcome) {
+    case kOutsideImage:
+      return {"outside_image", Rejection::kUntold};
+    case kNoDepth:
+      return {"no_depth", Rejection::kUntold};
+    case kOccluded:
+      return {"occluded", Rejection::kOccluded};
+    case kOtherSurface:
+      return {"other_surface", Rejection::kAbsent};
+    case kDepthEdge:
+      return {"depth_edge", Rejection::kUntold};
+    case kDistance:
+      return {"distance", Rejection::kMisfit};
+    case kNormalAngle:
+      return {"normal_angle", Rejection::kMisfit};
+    default:
+      return {"grazing", Rejection::kUntold};
+  }
+}
+
+PointwiseAssociator::Outcome PointwiseAssociator::Match(
+    const ModelSample& sample, const WarpField& warp, const Gates& gates,
+    Correspondence* out) const {
+  const Eigen::Vector3f point = warp.WarpPoint(sample.skinning, sample.point);
+  LivePixel pixel;
+  const Outcome found = Find(point, &pixel);
+  if (found != kAccepted) return found;
+  const int u = pixel.u, v = pixel.v;
+  out->target = ToEigen(live_.map.points(v, u));
+  const float gate =
+      std::max(gates.distance, kPairNoise.At(out->target.z()));
+  if ((point - out->target).squaredNorm() > gate * gate) return kDistance;
+  out->target_normal = ToEigen(live_.map.normals(v, u));
+  out->warped_normal = warp.WarpNormal(sample.skinning, sample.normal);
+  if (out->warped_normal.dot(out->target_normal) < gates.min_normal_cosine) {
+    return kNormalAngle;
+  }
+  if (-out->target_normal.dot(out->target) <
+      gates.min_view_cosine * out->target.norm()) {
+    return kGrazing;
+  }
+  out->model = sample;
+  out->pixel = pixel.place;
+  const GreyLevel& grey = live_.grey[gates.color_level];
+  const cv::Vec2f& gradient = grey.gradient(v, u);
+  out->intensity_gradient = Eigen::Vector2f(gradient[0], gradient[1]);
+  // First-order to the place between the pixels.
+  const float live_intensity =
+      grey.value(v, u) +
+      out->intensity_gradient.dot(
+          pixel.place -
+          Eigen::Vector2f(static_cast<float>(u), static_cast<float>(v)));
+  out->intensity_difference =
+      live_intensity - sample.intensity[gates.color_level];
+  out->weight = DepthConfidence(out->target.z());
+  return kAccepted;
+}
+
+Association PointwiseAssociator::Associate(
+    const std::vector<ModelSample>& samples, const WarpField& warp, int stride,
+    const AssociationGates& association_gates) const {
+  std::vector<const ModelSample*> used;
+  for (const ModelSample& sample : samples) {
+    if (sample.u % stride == 0 && sample.v % stride == 0) {
+      used.push_back(&sample);
+    }
+  }
+  const Gates gates(association_gates);
+  std::vector<Outcome> outcomes(used.size());
+  std::vector<Correspondence> matches(used.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, used.size(), 1024),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end();
+                           ++i) {
+                        outcomes[i] = Match(*used[i], warp, gates, &matches[i]);
+                      }
+                    });
+  std::array<int, kGrazing + 1> counts{};
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    ++counts[outcomes[i]];
+    if (outcomes[i] != kAccepted) continue;
+    if (accepted < i) matches[accepted] = matches[i];
+    ++accepted;
+  }
+  matches.resize(accepted);
+  Association association;
+  association.correspondences = std::move(matches);
+  RemoveCommonBrightness(&association.correspondences);
+  association.counts.model_points = static_cast<int>(used.size());
+  association.counts.accepted = counts[kAccepted];
+  for (const Outcome outcome : outcomes_) {
+    association.counts.rejected.push_back(Row(outcome));
+    association.counts.rejected.back().count = counts[outcome];
+  }
+  return association;
+}
+
+}  // namespace splitfusion
