@@ -7,8 +7,8 @@
 
 #include "splitfusion/lib/association/association_counts.h"
 #include "splitfusion/lib/association/correspondence.h"
-#include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/base/registry.h"
+#include "splitfusion/lib/frame/live_view.h"
 
 namespace splitfusion {
 

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "splitfusion/lib/base/registry.h"
-#include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/energy/term_options.h"
 
 namespace splitfusion {
+
+class EnergyTerm;
 
 /// Terms by name.
 using TermRegistry = Registry<EnergyTerm>;

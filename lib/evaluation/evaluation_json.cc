@@ -6,6 +6,7 @@
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/evaluation/headline.h"
 #include "splitfusion/lib/evaluation/mean_error.h"
+#include "splitfusion/lib/evaluation/run_evaluation.h"
 
 namespace splitfusion {
 namespace {

@@ -4,9 +4,11 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "splitfusion/lib/evaluation/run_evaluation.h"
-
 namespace splitfusion {
+
+struct RunEvaluation;
+struct SurfaceError;
+struct TrajectoryError;
 
 /// What `evaluation.json` holds; keys in docs/evaluation.md.
 nlohmann::ordered_json ToJson(const RunEvaluation& evaluation);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "splitfusion/lib/evaluation/mean_error.h"
+#include "splitfusion/lib/evaluation/run_evaluation.h"
 
 namespace splitfusion {
 namespace {

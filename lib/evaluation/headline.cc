@@ -1,6 +1,7 @@
 #include "splitfusion/lib/evaluation/headline.h"
 
 #include "splitfusion/lib/evaluation/mean_error.h"
+#include "splitfusion/lib/evaluation/run_evaluation.h"
 
 namespace splitfusion {
 namespace {

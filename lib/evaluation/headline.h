@@ -4,9 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "splitfusion/lib/evaluation/run_evaluation.h"
-
 namespace splitfusion {
+
+struct RunEvaluation;
 
 /// The figures of a run that tables of many runs show. Those of instances are
 /// plain means over the instances that have them, people and whatever else

@@ -10,7 +10,7 @@
 #include "splitfusion/lib/geometry/camera.h"
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
-#include "splitfusion/lib/sequence/image_folder_reader.h"
+#include "splitfusion/lib/sequence/reader_options.h"
 #include "splitfusion/lib/sequence/trajectory.h"
 
 namespace splitfusion {

@@ -8,29 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/geometry/camera.h"
-#include "splitfusion/lib/sequence/depth_filter.h"
 #include "splitfusion/lib/sequence/frame.h"
+#include "splitfusion/lib/sequence/reader_options.h"
 #include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {
-
-/// How a sequence is read.
-struct ReaderOptions {
-  std::string format = "auto";  ///< See ResolveFormat().
-  int first_frame = 0;          ///< Frames before it are skipped; indices stay.
-  int max_frames = 0;           ///< Frames read at most; 0 = all.
-  /// Replaces the intrinsics that the format finds.
-  std::optional<PinholeCamera> camera;
-  /// Units a metre; replaces what the format finds; 0 = that.
-  double depth_scale = 0;
-  DepthFilterOptions depth_filter;  ///< Applied to every depth image.
-  /// Frames whose images are missing or broken are left out; indices stay.
-  bool skip_bad_frames = false;
-
-  /// @throw InputError if a value is out of its range.
-  void Check() const;
-};
 
 /// A frame that is not there or cannot be used.
 struct BadFrame {

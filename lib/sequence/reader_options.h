@@ -1,0 +1,31 @@
+#ifndef SPLITFUSION_LIB_SEQUENCE_READER_OPTIONS_H_
+#define SPLITFUSION_LIB_SEQUENCE_READER_OPTIONS_H_
+
+#include <optional>
+#include <string>
+
+#include "splitfusion/lib/geometry/camera.h"
+#include "splitfusion/lib/sequence/depth_filter.h"
+
+namespace splitfusion {
+
+/// How a sequence is read.
+struct ReaderOptions {
+  std::string format = "auto";  ///< See ResolveFormat().
+  int first_frame = 0;          ///< Frames before it are skipped; indices stay.
+  int max_frames = 0;           ///< Frames read at most; 0 = all.
+  /// Replaces the intrinsics that the format finds.
+  std::optional<PinholeCamera> camera;
+  /// Units a metre; replaces what the format finds; 0 = that.
+  double depth_scale = 0;
+  DepthFilterOptions depth_filter;  ///< Applied to every depth image.
+  /// Frames whose images are missing or broken are left out; indices stay.
+  bool skip_bad_frames = false;
+
+  /// @throw InputError if a value is out of its range.
+  void Check() const;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SEQUENCE_READER_OPTIONS_H_
