@@ -11,6 +11,7 @@
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "splitfusion/lib/sequence/reader_options.h"
+#include "splitfusion/lib/sequence/sequence_format.h"
 #include "splitfusion/lib/sequence/trajectory.h"
 
 namespace splitfusion {

@@ -8,6 +8,7 @@
 #include "splitfusion/lib/evaluation/ghosts.h"
 #include "splitfusion/lib/evaluation/ground_truth.h"
 #include "splitfusion/lib/evaluation/headline.h"
+#include "splitfusion/lib/evaluation/run_evaluation.h"
 #include "splitfusion/lib/evaluation/surface_error.h"
 #include "splitfusion/lib/evaluation/trajectory_error.h"
 #include "splitfusion/lib/experiment/task_record.h"

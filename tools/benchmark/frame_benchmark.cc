@@ -130,7 +130,7 @@ void EndToEnd(benchmark::State& state) {
   const std::vector<MaskedFrame> film = FilmScene(scene, kFrames);
   for (auto _ : state) {
     SplitFusion fusion(scene.camera(), PipelineOptions(), LabelTable(),
-                       std::make_shared<GivenMasks>(film), BuiltinTerms());
+                       std::make_shared<GivenMasks>(film));
     const Stopwatch watch;
     for (const MaskedFrame& frame : film) fusion.ProcessFrame(frame.frame);
     state.SetIterationTime(watch.Seconds() / kFrames);
