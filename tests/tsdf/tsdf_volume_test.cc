@@ -219,6 +219,27 @@ TEST(TsdfVolume, WhatTurnsOutToBeAnotherSurfaceIsForgotten) {
   EXPECT_EQ(vertices_after(2, 9, 1.0), wall) << "hidden, not refuted";
 }
 
+TEST(TsdfVolume, WhatIsForgottenInPlacesCanBeMeshed) {
+  // Here and there, so that blocks keep or lose all that is inside.
+  TsdfVolume volume(kOptions);
+  Fuse(WallDepth(SmallCamera(), 1.1), Rigid3d::Identity(), &volume);
+  DepthObservation other =
+      ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1.1));
+  other.others_refute = true;
+  for (int v = 0; v < other.role.rows; ++v) {
+    for (int u = 0; u < other.role.cols; ++u) {
+      other.role(v, u) = static_cast<std::uint8_t>(
+          (u / 7 + v / 5) % 3 == 0 ? PixelRole::kNone : PixelRole::kCarve);
+    }
+  }
+  const std::size_t before = ExtractMesh(volume, 0.05).vertices.size();
+  IntegrateRigid(other, Rigid3d::Identity(), &volume);
+  const TriangleMesh mesh = ExtractMesh(volume, 0.05);
+  EXPECT_GT(mesh.vertices.size(), before / 10);
+  EXPECT_LT(mesh.vertices.size(), before / 2);
+  EXPECT_NEAR(MeanDepth(mesh), 1.1, 0.1 * kVoxel);
+}
+
 TEST(TsdfVolume, MeshesOnlyWhatWasObservedEnough) {
   TsdfVolume volume(kOptions);
   Fuse(WallDepth(SmallCamera(), 1.1), Rigid3d::Identity(), &volume);

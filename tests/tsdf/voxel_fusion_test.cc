@@ -136,7 +136,13 @@ bool UpdateVoxel(const DepthObservation& seen, const float dither[],
   const bool in_band = role == PixelRole::kWrite && sdf >= -truncation;
   if (!in_band && sdf <= truncation) {
     if (seen.others_refute && sdf > -truncation) {
-      block->weight[i] = std::max(block->weight[i] - seen.weight(v, u), 0.0f);
+      const float rest = block->weight[i] - seen.weight(v, u);
+      const bool refuted = seen.weight(v, u) > 0;
+      block->weight[i] = std::max(rest, 0.0f);
+      if (refuted && rest <= 0) {
+        block->distance[i] = static_cast<float>(truncation);
+      }
+      is_certain = is_certain && !IsClose(rest, 0, kMargin);
     }
     return is_certain;
   }

@@ -130,7 +130,10 @@ SPLITFUSION_INLINE int BlendDistances(const FusionView& view,
     // No division by zero where neither voxel nor pixel has a weight.
     const float blend = std::max(confidence, 0.0f) / std::max(sum, 1e-30f);
     const float seen = std::max(-truncation, std::min(truncation, sdf));
-    const float mean = distance + blend * (seen - distance);
+    // A voxel that was refuted is as if it had never been observed.
+    const bool forgotten = (confidence < 0) & (sum <= 0);
+    const float mean =
+        forgotten ? truncation : distance + blend * (seen - distance);
     const bool emptied = (update->is_free[i] != 0) & (mean > 0.9f * truncation);
     const float capped =
         std::min(sum, emptied ? view.max_free_weight : view.max_weight);
