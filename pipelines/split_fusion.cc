@@ -253,15 +253,16 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
   }
 }
 
-void SplitFusion::Drop(int id, const std::string& state,
-                       SurfaceReport* report) {
-  report->id = id;
-  report->label = surfaces_.at(id)->label();
-  report->kind = surfaces_.at(id)->kind();
-  report->state = state;
+SurfaceReport SplitFusion::Remove(int id) {
+  SurfaceReport report;
+  report.id = id;
+  report.label = surfaces_.at(id)->label();
+  report.kind = surfaces_.at(id)->kind();
+  report.state = "merged";
   surfaces_.erase(id);
   predictors_.erase(id);
   following_.erase(id);
+  return report;
 }
 
 void SplitFusion::FollowInstances(FrameReport* report) {
@@ -274,9 +275,7 @@ void SplitFusion::FollowInstances(FrameReport* report) {
     found->second->set_dormant(instance.dormant || held);
     found->second->set_label(instance.class_name);
     if (instance.merged_into == 0) continue;
-    SurfaceReport merged;
-    Drop(id, "merged", &merged);
-    report->surfaces.push_back(std::move(merged));
+    report->surfaces.push_back(Remove(id));
   }
 }
 
@@ -324,10 +323,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
     const auto found = surfaces_.find(id);
-    // Dropped and merged surfaces are gone, even if one was born anew.
-    const bool gone =
-        surface_report.state == "dropped" || surface_report.state == "merged";
-    if (gone || found == surfaces_.end()) continue;
+    if (found == surfaces_.end()) continue;  // Merged.
     Surface& surface = *found->second;
     const auto seen = pixels.find(id);
     surface_report.pixels = seen == pixels.end() ? 0 : seen->second;

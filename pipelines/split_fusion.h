@@ -111,7 +111,8 @@ class SplitFusion {
   /// Whether the live pixels of a surface show about as much of it as usual.
   bool InPlainView(const SurfaceReport& report) const;
   void ReanchorLostSurfaces(FrameReport* report);
-  void Drop(int id, const std::string& state, SurfaceReport* report);
+  /// Of a surface that is a part of another one.
+  SurfaceReport Remove(int id);
   void AddNewSurfaces(const Frame& frame, FrameReport* report);
   void Record(const Frame& frame, FrameReport* report);
   template <typename Archive>

@@ -28,9 +28,8 @@ struct SurfaceReport {
   SurfaceKind kind = SurfaceKind::kRigid;  ///< How it is tracked.
   /// "tracked", "born", "lost" (a frame that failed; motion kept, nothing
   /// fused), "hidden" (mostly behind other surfaces; carried on as predicted,
-  /// nothing fused), "unseen" (not in view), "dropped" (a young surface that
-  /// was lost too often and begins anew) or "merged" (it turned out to be a
-  /// part of another surface).
+  /// nothing fused), "unseen" (not in view), "reanchored" (its model begins
+  /// anew) or "merged" (it turned out to be a part of another surface).
   std::string state;
   std::string reason;       ///< Why lost or hidden; empty otherwise.
   int pixels = 0;           ///< Live pixels with depth of this surface.

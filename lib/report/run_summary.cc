@@ -128,11 +128,6 @@ void SummaryBuilder::Add(const FrameReport& report) {
 }
 
 bool SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
-  if (report.state == "dropped") {  // It begins anew, under the same id.
-    surfaces_.erase(report.id);
-    last_states_.erase(report.id);
-    return false;
-  }
   const auto [found, is_new] = surfaces_.try_emplace(report.id);
   SurfaceSummary& surface = found->second;
   if (is_new) surface.first_frame = frame;

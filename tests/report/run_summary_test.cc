@@ -124,19 +124,14 @@ TEST(VerdictLine, SaysWhoWasNotFoundAgain) {
   EXPECT_EQ(ToJson(summary)["verdict"], VerdictLine(summary));
 }
 
-TEST(SummaryBuilder, ADroppedSurfaceBeginsAnew) {
-  SummaryBuilder builder;
-  for (int frame = 0; frame < 3; ++frame) builder.Add(SampleReport(frame));
-  FrameReport anew = SampleReport(3);
-  SurfaceReport born = anew.surfaces[1];
-  anew.surfaces[1].state = "dropped";
-  born.state = "born";
-  anew.surfaces.push_back(born);
-  builder.Add(anew);
-  const RunSummary summary = builder.Build();
-  ASSERT_EQ(summary.surfaces.size(), 2u);
-  EXPECT_EQ(summary.surfaces[1].first_frame, 3);
-  EXPECT_EQ(summary.surfaces[1].frames, 1);
+TEST(SummaryBuilder, AReanchoredSurfaceIsFoundAgain) {
+  const RunSummary summary =
+      Through({"born", "tracked", "lost", "lost", "reanchored", "tracked"});
+  EXPECT_EQ(summary.surfaces[1].reanchored, std::vector<int>{4});
+  EXPECT_EQ(summary.surfaces[1].refound, std::vector<int>{4});
+  EXPECT_EQ(summary.surfaces[1].lost, (std::vector<int>{2, 3}));
+  EXPECT_EQ(summary.surfaces[1].frames, 4);
+  EXPECT_EQ(summary.surfaces[1].away_since, -1);
 }
 
 TEST(SummaryBuilder, TakesTheSpacingOfTheLastGraph) {
