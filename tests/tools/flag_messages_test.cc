@@ -70,7 +70,7 @@ TEST_F(FlagMessages, NameTheTermsAndWhatIsWrongInThem) {
              "--terms: loss = none: expected trivial, huber,");
   RunRefuses("--terms='arap(wait=1)'", "--terms: key 'wait' of term 'arap'");
   RunRefuses("--terms=arab", "--terms: term = arab: expected point_to_plane");
-  RunRefuses("--terms=", "--terms is empty: expected one or more of arap");
+  RunRefuses("--terms=", "--terms is empty: expected one or more of point_to_plane");
 }
 
 TEST_F(FlagMessages, SayAnglesInTheFlagsUnit) {
