@@ -98,8 +98,10 @@ void AddTerms(const TermRegistry& terms, RunIdentity* identity) {
   identity->parts["terms"] = order;
 }
 
-void AddFrames(const ImageFolderReader& reader, const ContentCache& cache,
-               RunIdentity* identity) {
+}  // namespace
+
+NamedValues InputParts(const ImageFolderReader& reader) {
+  NamedValues parts;
   std::vector<std::string> files;
   ContentHash hash;
   for (const AssociatedFiles& pair : reader.pairs()) {
@@ -107,9 +109,10 @@ void AddFrames(const ImageFolderReader& reader, const ContentCache& cache,
     files.push_back(pair.depth.file);
     hash.Add(NumberText(pair.depth.timestamp));
   }
-  hash.Add(cache.HashOfFiles(FLAGS_sequence, files));
-  identity->parts["input.frame_count"] = std::to_string(reader.size());
-  identity->parts["input.frames"] = hash.Hex();
+  const ContentCache cache(UserCacheFolder());
+  hash.Add(cache.HashOfFiles(reader.folder(), files));
+  parts["input.frame_count"] = std::to_string(reader.size());
+  parts["input.frames"] = hash.Hex();
   const Calibration& used = reader.calibration();
   std::string camera;
   for (const double value : {used.camera.fx, used.camera.fy, used.camera.cx,
@@ -117,8 +120,11 @@ void AddFrames(const ImageFolderReader& reader, const ContentCache& cache,
                              double(used.camera.height), used.depth_scale}) {
     camera += (camera.empty() ? "" : " ") + NumberText(value);
   }
-  identity->parts["input.camera"] = camera;
+  parts["input.camera"] = camera;
+  return parts;
 }
+
+namespace {
 
 /// Content of a file that a flag names; "none" without one.
 std::string FileHash(const std::string& path) {
@@ -186,7 +192,7 @@ RunIdentity IdentityFromFlags(const ImageFolderReader& reader,
   RunIdentity identity;
   AddFlags(&identity);
   AddTerms(terms, &identity);
-  AddFrames(reader, cache, &identity);
+  identity.parts.merge(InputParts(reader));
   identity.parts["input.masks"] = MasksHash(cache);
   identity.parts["input.labels"] = FileHash(FLAGS_labels);
   identity.parts["input.from"] = FileHash(

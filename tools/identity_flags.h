@@ -13,6 +13,11 @@ namespace splitfusion {
 /// @throw InputError if a key or value is unknown.
 void ApplySetFlag(const TermRegistry& terms);
 
+/// The frames and the camera of a sequence, as parts of an identity.
+///
+/// @throw InputError if an image cannot be read.
+NamedValues InputParts(const ImageFolderReader& reader);
+
 /// What decides the result of a run of these flags: the options of the method,
 /// the contents of images, calibration, masks, labels and network, the method
 /// itself and the libraries under it.

@@ -20,6 +20,7 @@
 #include "splitfusion/lib/experiment/result_files.h"
 #include "splitfusion/lib/experiment/result_statistics.h"
 #include "splitfusion/lib/experiment/result_table.h"
+#include "splitfusion/lib/experiment/row_file.h"
 #include "splitfusion/lib/experiment/sequence_list.h"
 #include "splitfusion/lib/experiment/sweep.h"
 #include "tool_main.h"
@@ -166,10 +167,16 @@ bool WarnOfOutdated(const ResultTable& table) {
 
 void AddRows(const ResultTable& table) {
   if (FLAGS_rows_csv.empty()) return;
+  AddToRowFile(table, FLAGS_rows_csv);
+}
+
+/// A file that cannot be written is better found before the runs than after.
+void CheckRowFile() {
+  if (FLAGS_rows_csv.empty()) return;
   if (!std::filesystem::exists(FLAGS_rows_csv)) {
     std::cerr << "sf_batch: " << FLAGS_rows_csv << ": is a new file\n";
   }
-  AddToRowFile(table, FLAGS_rows_csv);
+  RowFile(FLAGS_rows_csv).Write(FLAGS_rows_csv);
 }
 
 /// Writes all tables and prints them. False if runs had to be left out that
@@ -189,7 +196,7 @@ bool Collect(const std::string& baseline_flag) {
   std::cout << PrintedSummary(table, groups, TerminalWidth());
   if (!baseline.empty()) {
     const auto differences = CompareWithBaseline(table, baseline);
-    files.push_back(DifferencesTable(table, differences));
+    files.push_back(DifferencesTable(table, differences.groups));
     WriteCsv(folder.Below("differences.csv"), files[2]);
     std::cout << '\n'
               << PrintedDifferences(table, differences, baseline,
@@ -225,6 +232,7 @@ void CheckTables(const Experiment& experiment,
     for (const Task& task : KnownTasks(folder)) tasks.push_back(task);
   }
   for (const Task& task : PlanForeign(tasks, foreign)) tasks.push_back(task);
+  if (!FLAGS_rows_csv.empty()) RowFile{FLAGS_rows_csv};
   if (experiment.baseline.empty()) return;
   try {
     CheckBaseline(PlannedTable(tasks), experiment.baseline);
@@ -235,9 +243,8 @@ void CheckTables(const Experiment& experiment,
 }
 
 int RunExperiment() {
-  CatchInterruption(SecondSignal::kIsTold);
   const Experiment experiment = ExperimentFromFlags();
-  const SweepOptions options = SweepOptionsFromFlags(experiment);
+  SweepOptions options = SweepOptionsFromFlags(experiment);
   const std::vector<ForeignResult> foreign = ParseForeignResults(FLAGS_foreign);
   CheckTables(experiment, foreign);
   if (FLAGS_dry_run) return PrintDryRun(experiment, options);
@@ -245,6 +252,11 @@ int RunExperiment() {
     std::cerr << "sf_batch: warning: " << options.jobs << " jobs x "
               << options.threads << " threads on " << Cores() << " cores\n";
   }
+  // Until then a signal just ends the program.
+  options.planned = [] {
+    CheckRowFile();
+    CatchInterruption(SecondSignal::kIsTold);
+  };
   ProgressLines lines;
   const SweepOutcome outcome = RunSweep(
       experiment, options,
@@ -287,6 +299,7 @@ int PrintStatus() {
 }
 
 int CollectAll() {
+  CheckRowFile();
   AddForeignResults(ExperimentFolder(FLAGS_output),
                     ParseForeignResults(FLAGS_foreign));
   return Collect(FLAGS_baseline) ? kExitDone : kExitFailedRuns;

@@ -159,8 +159,22 @@ void CheckRunFiles() {
   }
 }
 
+/// What is in RUN/unfinished alone cannot be judged yet.
+void CheckIsThere() {
+  namespace fs = std::filesystem;
+  const RunPaths paths(FLAGS_run);
+  const bool only_begun =
+      !fs::exists(paths.Trajectory()) && fs::exists(paths.Unfinished());
+  if (!only_begun) return;
+  throw InputError(FLAGS_run +
+                   ": holds an unfinished run alone (in unfinished): expected "
+                   "one that has ended; the same sf_run command goes on with "
+                   "it");
+}
+
 void EvaluateRunDirectory(const EvaluationOptions& options,
                           const FormatRegistry& formats) {
+  CheckIsThere();
   CheckRunFiles();
   RecordedRun run = ReadRun(FLAGS_run);
   run.formats = formats;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,7 @@
 #include "splitfusion/lib/report/disk_space.h"
 #include "splitfusion/lib/report/library_versions.h"
 #include "splitfusion/lib/report/run_folder.h"
+#include "splitfusion/lib/report/run_marker.h"
 #include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "splitfusion/pipelines/sequence_run.h"
 #include "tool_main.h"
@@ -115,12 +117,35 @@ SequenceRunHooks Hooks(ProgressLine* progress) {
 }
 
 /// A full disk is better found before the first frame than after the last.
-void CheckDisk(const ImageFolderReader& reader, const RunFolder& folder) {
-  if (folder.start() != RunStart::kFresh) return;
+void CheckDisk(const ImageFolderReader& reader, RunFolder* folder) {
+  if (folder->start() != RunStart::kFresh) return;
   const PinholeCamera& camera = reader.camera();
-  CheckDiskSpace(folder.unfinished().root(),
-                 EstimatedBytes({std::int64_t{camera.width} * camera.height,
-                                 reader.size(), FLAGS_pictures_every}));
+  try {
+    CheckDiskSpace(folder->unfinished().root(),
+                   EstimatedBytes({std::int64_t{camera.width} * camera.height,
+                                   reader.size(), FLAGS_pictures_every,
+                                   FLAGS_checkpoint_every >= 0}));
+  } catch (const InputError& error) {
+    folder->RecordFailure(error.what());
+    throw;
+  }
+}
+
+/// A state of other images or of another camera is of no use.
+void CheckFrom(ReaderOptions reading, const FormatRegistry& formats) {
+  if (FLAGS_from.empty()) return;
+  const std::optional<RunMarker> marker = ReadRunMarker(FLAGS_from);
+  CheckOption(marker.has_value(), "from", FLAGS_from,
+              "a run with a run.json and --keep_checkpoints");
+  const NamedValues& parts = marker->identity.parts;
+  const auto count = parts.find("input.frame_count");
+  if (count != parts.end()) reading.max_frames = std::stoi(count->second);
+  for (const auto& [name, here] :
+       InputParts(ImageFolderReader(FLAGS_sequence, reading, formats))) {
+    const auto there = parts.find(name);
+    CheckOption(there != parts.end() && there->second == here, "from",
+                FLAGS_from, "a run of this sequence, but " + name + " differs");
+  }
 }
 
 /// What needs no file to be looked at.
@@ -134,6 +159,8 @@ void CheckValues() {
               FLAGS_checkpoint_every, "a number of frames, 0 or -1");
   CheckOption(!FLAGS_keep_checkpoints || FLAGS_checkpoint_every > 0,
               "keep_checkpoints", "true", "--checkpoint_every above 0");
+  CheckOption(FLAGS_at == 0 || !FLAGS_from.empty(), "at", FLAGS_at,
+              "--from beside it");
   CheckOption(!FLAGS_keep_same || FLAGS_overwrite, "keep_same", "true",
               "--overwrite beside it");
 }
@@ -148,6 +175,7 @@ void CheckOutput() {
 /// The run itself, unless --output holds it.
 int Reconstruct(const ReaderOptions& reading, const PipelineOptions& options,
                 const Registries& registries) {
+  CheckFrom(reading, registries.formats);
   const ThreadLimit threads;
   SetBlasThreads(1);
   const auto make = [&] {
@@ -161,7 +189,7 @@ int Reconstruct(const ReaderOptions& reading, const PipelineOptions& options,
               << "and this input; nothing to do\n";
     return kExitDone;
   }
-  CheckDisk(work->reader, folder);
+  CheckDisk(work->reader, &folder);
   CatchInterruption();
   ProgressLine progress;
   SequenceRun run(std::move(work), make, &folder, RunOptionsFromFlags(),

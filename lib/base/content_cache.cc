@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <exception>
@@ -29,7 +30,7 @@ using Remembered = std::map<std::string, std::pair<std::string, std::string>>;
 constexpr int kSettled = 2;
 
 struct FileState {
-  std::string text;      // Size, time of change, inode.
+  std::string text;      // Size, times of content and of change, inode.
   bool settled = false;  // Whether the text tells of every later change.
 };
 
@@ -38,11 +39,15 @@ FileState StateOf(const std::string& path) {
   if (stat(path.c_str(), &state) != 0 || !S_ISREG(state.st_mode)) {
     throw InputError(path + ": cannot be read; expected a file");
   }
-  return {std::to_string(state.st_size) + ' ' +
-              std::to_string(state.st_mtim.tv_sec) + '.' +
-              std::to_string(state.st_mtim.tv_nsec) + ' ' +
-              std::to_string(state.st_ino),
-          std::time(nullptr) - state.st_mtim.tv_sec > kSettled};
+  std::string text = std::to_string(state.st_size);
+  // The first can be set back by whoever changes a file, the second cannot.
+  for (const timespec& time : {state.st_mtim, state.st_ctim}) {
+    text +=
+        ' ' + std::to_string(time.tv_sec) + '.' + std::to_string(time.tv_nsec);
+  }
+  const std::time_t last = std::max(state.st_mtim.tv_sec, state.st_ctim.tv_sec);
+  return {text + ' ' + std::to_string(state.st_ino),
+          std::time(nullptr) - last > kSettled};
 }
 
 Remembered Read(const std::string& path) {

@@ -7,7 +7,8 @@
 namespace splitfusion {
 
 /// Hashes of files by content that remembers what it has read: a file whose
-/// size, time of change and inode are as before is not read again.
+/// size, times of content and of change, and inode are as before is not read
+/// again.
 class ContentCache {
  public:
   /// `folder`: where it is kept, made when needed; empty = nowhere. What cannot

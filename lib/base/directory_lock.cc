@@ -87,7 +87,10 @@ std::string ToText(const LockHolder& holder) {
          "\n";
 }
 
+/// Empty for what is no file.
 std::string ReadAll(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return "";
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -216,6 +219,10 @@ std::optional<DirectoryLock> DirectoryLock::TryAcquire(
   for (int i = 0; i < kTries; ++i) {
     if (CreateExclusively(path, ToText(self))) {
       return DirectoryLock(path, self.id, options);
+    }
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) {
+      throw InputError(path + ": is a folder: expected a lock file, or none");
     }
     const std::string text = ReadAll(path);
     if (!IsStale(path, text, options)) break;

@@ -175,10 +175,25 @@ void CheckValues(const Axis& axis) {
 
 }  // namespace
 
+double Experiment::Count() const {
+  double points = random;
+  if (random == 0) {
+    points = 1;
+    for (const Axis& axis : grid) {
+      points *= static_cast<double>(axis.values.size());
+    }
+  }
+  return points * repeat *
+         static_cast<double>(sequences.size() *
+                             std::max<std::size_t>(1, rows.size()));
+}
+
 void Experiment::Check() const {
   CheckOption(!sequences.empty(), "sequences", "''",
               "sequence folders or a list of them");
   CheckFieldsAlone();
+  constexpr double kMost = 1e6;
+  CheckOption(Count() <= kMost, "experiment", Count(), "at most 1000000 runs");
 }
 
 void Experiment::CheckFieldsAlone() const {

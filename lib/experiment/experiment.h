@@ -38,7 +38,10 @@ struct Experiment {
   std::string baseline;
   Settings evaluate;  ///< Flags of sf_evaluate.
 
-  /// @throw InputError if there is nothing to run, or as CheckFieldsAlone().
+  /// Number of runs; some of a random design may be the same.
+  double Count() const;
+  /// @throw InputError if there is nothing to run, or more than a million
+  ///     runs, or as CheckFieldsAlone().
   void Check() const;
   /// The same of an experiment whose sequences are named elsewhere.
   ///

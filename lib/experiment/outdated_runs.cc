@@ -35,12 +35,6 @@ const ResultRow& Newest(const std::vector<ResultRow*>& rows) {
   return *newest;
 }
 
-void Mark(const std::string& why, ResultRow* row) {
-  if (why.empty()) return;
-  row->status = kOutdated + why;
-  row->figures = Figures();
-}
-
 /// Name of a task without its repeat.
 std::string NameOfRepeats(const ResultRow& row) {
   return row.task.name.substr(0, row.task.name.rfind("_r"));
@@ -52,17 +46,25 @@ bool IsOutdated(const ResultRow& row) {
 
 }  // namespace
 
+void MarkOutdated(const std::string& why, ResultRow* row) {
+  if (why.empty()) return;
+  row->status = kOutdated + why;
+  row->figures = Figures();
+}
+
 void MarkOutdated(ResultTable* table) {
   for (auto& [name, rows] : Gather(table, NameOfRepeats, &ResultRow::parts)) {
     const NamedValues now = Newest(rows).parts;
     for (ResultRow* row : rows) {
-      Mark(DifferencesBeyondRepeats(row->parts, now), row);
+      MarkOutdated(DifferencesBeyondRepeats(row->parts, now), row);
     }
   }
   const auto sequence = [](const ResultRow& row) { return row.task.sequence; };
   for (auto& [name, rows] : Gather(table, sequence, &ResultRow::evaluated_by)) {
     const NamedValues now = Newest(rows).evaluated_by;
-    for (ResultRow* row : rows) Mark(Differences(row->evaluated_by, now), row);
+    for (ResultRow* row : rows) {
+      MarkOutdated(Differences(row->evaluated_by, now), row);
+    }
   }
 }
 
@@ -76,9 +78,9 @@ std::string OutdatedText(const ResultTable& table) {
   }
   if (first == nullptr) return "";
   return std::to_string(count) + " of " + std::to_string(table.rows.size()) +
-         " runs are outdated and left out: " + first->task.name + " by " +
+         " runs are outdated and left out: " + first->task.name + " (" +
          first->status.substr(std::string(kOutdated).size()) +
-         "; sf_batch run does them again";
+         "); sf_batch run does them again";
 }
 
 }  // namespace splitfusion

@@ -14,6 +14,9 @@ namespace splitfusion {
 /// flags than the newest run of their sequence.
 void MarkOutdated(ResultTable* table);
 
+/// The same for one run.
+void MarkOutdated(const std::string& why, ResultRow* row);
+
 /// How many runs are outdated, and why the first one is, as one line; empty if
 /// none is.
 std::string OutdatedText(const ResultTable& table);

@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
+#include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -21,7 +24,7 @@ struct Shown {
   int decimals;      ///< Behind the point.
 };
 
-/// The most telling figures first.
+/// In this order where they tell equally much.
 constexpr std::array<Shown, 16> kShown = {{
     {"f_score_seen", "F seen %", 100, 1},
     {"ate_m", "ATE mm", 1000, 2},
@@ -66,23 +69,93 @@ std::string Number(double value, int decimals, bool with_sign) {
   return text;
 }
 
+/// Enough digits for a scatter to be told from zero, unless it is the rounding
+/// of sums.
+int Decimals(double scatter, int least) {
+  constexpr int kMost = 9;
+  for (int decimals = least; decimals <= kMost; ++decimals) {
+    const std::string text = Number(scatter, decimals, false);
+    if (std::atof(text.c_str()) != 0) return decimals;
+  }
+  return least;
+}
+
 /// "12.5", or "12.5+-0.3" if the scatter is known.
 std::string SpreadText(const Spread& spread, double scatter, const Shown& shown,
                        bool with_sign) {
   if (spread.count == 0) return "-";
-  std::string text =
-      Number(spread.mean * shown.factor, shown.decimals, with_sign);
-  if (std::isfinite(scatter)) {
-    text += "+-" + Number(scatter * shown.factor, shown.decimals, false);
-  }
+  scatter *= shown.factor;
+  const int decimals = Decimals(scatter, shown.decimals);
+  std::string text = Number(spread.mean * shown.factor, decimals, with_sign);
+  if (std::isfinite(scatter)) text += "+-" + Number(scatter, decimals, false);
   return text;
+}
+
+/// Standard deviation within the groups; NaN if none has two values.
+double PooledDeviation(const std::vector<ResultGroup>& groups,
+                       std::size_t index) {
+  double squares = 0;
+  int freedom = 0;
+  for (const ResultGroup& group : groups) {
+    const Spread& spread = group.figures[index];
+    if (spread.count < 2) continue;
+    freedom += spread.count - 1;
+    squares += (spread.count - 1) * spread.standard_deviation *
+               spread.standard_deviation;
+  }
+  return std::sqrt(squares / freedom);
+}
+
+/// The greatest difference to the baseline, or between two groups of a
+/// sequence.
+double LargestEffect(const std::vector<ResultGroup>& groups, std::size_t index,
+                     bool differences) {
+  std::map<std::string, std::pair<double, double>> ranges;
+  double effect = 0;
+  for (const ResultGroup& group : groups) {
+    const double mean = group.figures[index].mean;
+    if (!std::isfinite(mean)) continue;
+    const double first = differences ? 0 : mean;
+    auto& [low, high] =
+        ranges.try_emplace(group.sequence, first, first).first->second;
+    low = std::min(low, mean);
+    high = std::max(high, mean);
+    effect = std::max(effect, high - low);
+  }
+  return effect;
+}
+
+/// How much a figure tells: its effect in scatters. Without a scatter an effect
+/// is more than none.
+double Telling(const std::vector<ResultGroup>& groups, std::size_t index,
+               bool differences) {
+  const double effect = LargestEffect(groups, index, differences);
+  const double deviation = PooledDeviation(groups, index);
+  if (effect == 0) return 0;
+  return std::isfinite(deviation) ? effect / deviation : 1;
+}
+
+/// The figures in the order in which they are shown.
+std::vector<Shown> InOrder(const std::vector<ResultGroup>& groups,
+                           bool differences) {
+  std::vector<std::pair<double, Shown>> order;
+  for (const Shown& shown : kShown) {
+    order.emplace_back(Telling(groups, FigureIndex(shown.name), differences),
+                       shown);
+  }
+  std::stable_sort(
+      order.begin(), order.end(),
+      [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Shown> figures;
+  for (const auto& [telling, shown] : order) figures.push_back(shown);
+  return figures;
 }
 
 /// The head of a figure's column; the unit is SI's multiple.
 std::vector<Column> FigureColumns(const std::vector<ResultGroup>& groups,
                                   bool differences) {
   std::vector<Column> columns;
-  for (const Shown& shown : kShown) {
+  for (const Shown& shown : InOrder(groups, differences)) {
     const std::size_t index = FigureIndex(shown.name);
     Column column{shown.head, {}, false};
     bool known = false;
@@ -149,23 +222,23 @@ std::size_t TotalWidth(const std::vector<Column>& columns) {
 }
 
 /// Shortens names until they leave room for a figure or two; names of columns
-/// that had to go whole.
+/// that had to go whole, where they alone would be too wide.
 Lines FitNames(std::size_t width, std::vector<Column>* columns) {
   constexpr std::size_t kRoomForFigures = 28;
   const std::size_t room =
       width > 2 * kRoomForFigures ? width - kRoomForFigures : width / 2;
-  for (std::size_t limit = 24; limit >= 8 && TotalWidth(*columns) > room;
+  for (std::size_t limit = 24; limit >= 4 && TotalWidth(*columns) > room;
        limit -= 4) {
     for (Column& column : *columns) ShortenTo(limit, &column);
   }
   Lines dropped;
-  while (columns->size() > 1 && TotalWidth(*columns) > room) {
+  while (columns->size() > 1 && TotalWidth(*columns) > width) {
     // The number of runs is last, and stays.
     const std::size_t place = columns->size() > 2 ? columns->size() - 2 : 1;
     dropped.push_back((*columns)[place].head);
     columns->erase(columns->begin() + static_cast<std::ptrdiff_t>(place));
   }
-  if (TotalWidth(*columns) > room) ShortenTo(room, &columns->front());
+  if (TotalWidth(*columns) > width) ShortenTo(width, &columns->front());
   return dropped;
 }
 
@@ -244,10 +317,19 @@ std::string PrintedSummary(const ResultTable& table,
 }
 
 std::string PrintedDifferences(const ResultTable& table,
-                               const std::vector<ResultGroup>& groups,
+                               const Comparison& comparison,
                                const std::string& baseline, std::size_t width) {
+  const std::vector<ResultGroup>& groups = comparison.groups;
+  std::string unpaired;
+  if (comparison.unpaired > 0) {
+    unpaired = Wrapped(std::to_string(comparison.unpaired) +
+                           " runs are not compared: no run of " + baseline +
+                           " has the same sequence, repeat and other options.",
+                       width);
+  }
   if (groups.empty()) {
-    return Wrapped("Nothing to compare with " + baseline + ".", width);
+    return Wrapped("Nothing to compare with " + baseline + ".", width) +
+           unpaired;
   }
   std::vector<Column> names = NameColumns(table, groups, /*all_keys=*/true);
   Column seconds{"s/run", {}, false};
@@ -260,7 +342,8 @@ std::string PrintedDifferences(const ResultTable& table,
                      ", run by run of the same sequence and repeat: mean +- "
                      "standard error.",
                  width) +
-         Fitted(names, FigureColumns(groups, /*differences=*/true), width);
+         Fitted(names, FigureColumns(groups, /*differences=*/true), width) +
+         unpaired;
 }
 
 }  // namespace splitfusion

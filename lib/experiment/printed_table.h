@@ -9,15 +9,18 @@
 namespace splitfusion {
 
 /// Means and scatters as a table for a terminal: what varies, what is not
-/// complete, and the figures that are known, the most telling ones first. No
-/// line is wider than `width`: what does not fit is named below.
+/// complete, and the figures that are known. Those come first whose largest
+/// difference within a sequence is the most scatters (pooled over the lines);
+/// without scatter, those that differ at all. No line is wider than `width`:
+/// what does not fit is named below.
 std::string PrintedSummary(const ResultTable& table,
                            const std::vector<ResultGroup>& groups,
                            std::size_t width);
 
-/// The same of differences to a baseline, with standard errors.
+/// The same of differences to a baseline, with standard errors; the largest
+/// difference counts. A line tells of runs that were not compared.
 std::string PrintedDifferences(const ResultTable& table,
-                               const std::vector<ResultGroup>& groups,
+                               const Comparison& comparison,
                                const std::string& baseline, std::size_t width);
 
 }  // namespace splitfusion

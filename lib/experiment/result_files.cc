@@ -74,13 +74,22 @@ std::string Identifier(const std::string& name) {
 
 void Bind(sqlite3* database, sqlite3_stmt* statement, int place,
           const Cell& cell) {
-  const int code = cell.is_number
-                       ? sqlite3_bind_double(statement, place, cell.number)
-                   : cell.text.empty()
-                       ? sqlite3_bind_null(statement, place)
-                       : sqlite3_bind_text(statement, place, cell.text.c_str(),
-                                           -1, SQLITE_TRANSIENT);
+  const int code =
+      cell.is_count
+          ? sqlite3_bind_int64(statement, place, static_cast<int>(cell.number))
+      : cell.is_number ? sqlite3_bind_double(statement, place, cell.number)
+      : cell.text.empty()
+          ? sqlite3_bind_null(statement, place)
+          : sqlite3_bind_text(statement, place, cell.text.c_str(), -1,
+                              SQLITE_TRANSIENT);
   Check(code, SQLITE_OK, database);
+}
+
+/// Frames are counted, everything else is measured.
+Cell FigureCell(const std::string& name, double value) {
+  const bool is_count = name == "frames" || name == "lost_frames";
+  return is_count && std::isfinite(value) ? Cell(static_cast<int>(value))
+                                          : Cell(value);
 }
 
 void InsertTable(sqlite3* database, const FileTable& table) {
@@ -133,16 +142,19 @@ Cell::Cell(double value) : is_number(std::isfinite(value)), number(value) {
   text = row.text();
 }
 
+Cell::Cell(int value) : Cell(static_cast<double>(value)) { is_count = true; }
+
 FileTable ResultsTable(const ResultTable& table) {
   FileTable file{
       "results", Columns({"task", "sequence", "repeat", "status"}, table), {}};
   for (const char* name : kFigureNames) file.columns.emplace_back(name);
   for (const ResultRow& row : table.rows) {
     std::vector<Cell> cells =
-        Cells({row.task.name, row.task.sequence,
-               static_cast<double>(row.task.repeat), row.status},
+        Cells({row.task.name, row.task.sequence, row.task.repeat, row.status},
               row.values);
-    for (const double value : row.figures.values) cells.emplace_back(value);
+    for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
+      cells.push_back(FigureCell(kFigureNames[i], row.figures.values[i]));
+    }
     file.rows.push_back(std::move(cells));
   }
   return file;
@@ -158,8 +170,8 @@ FileTable SummaryTable(const ResultTable& table,
   }
   for (const ResultGroup& group : groups) {
     std::vector<Cell> cells = Cells({group.sequence}, group.values);
-    cells.emplace_back(static_cast<double>(group.runs));
-    cells.emplace_back(static_cast<double>(group.planned));
+    cells.emplace_back(group.runs);
+    cells.emplace_back(group.planned);
     for (const Spread& spread : group.figures) {
       cells.emplace_back(spread.mean);
       cells.emplace_back(spread.standard_deviation);
@@ -181,7 +193,7 @@ FileTable DifferencesTable(const ResultTable& table,
   }
   for (const ResultGroup& group : groups) {
     std::vector<Cell> cells = Cells({group.sequence}, group.values);
-    cells.emplace_back(static_cast<double>(group.runs));
+    cells.emplace_back(group.runs);
     cells.emplace_back(group.seconds.mean);
     for (const Spread& spread : group.figures) {
       cells.emplace_back(spread.mean);

@@ -14,9 +14,12 @@ struct Cell {
   Cell(std::string value);  // NOLINT: a row of cells is written as values.
   /// A number; NaN and infinity are unknown.
   Cell(double value);  // NOLINT: likewise.
+  /// A count.
+  Cell(int value);  // NOLINT: likewise.
 
   std::string text;        ///< As in CSV; empty = unknown.
-  bool is_number = false;  ///< Whether SQLite stores a number.
+  bool is_number = false;  ///< Whether SQLite stores a number,
+  bool is_count = false;   ///< and a whole one.
   double number = 0;       ///< That number.
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/experiment/repeats.h"
 
 namespace splitfusion {
 namespace {
@@ -93,33 +94,91 @@ std::vector<const ResultRow*> FindCandidates(const ResultTable& table,
   return candidates;
 }
 
-/// Whether two rows agree in all keys of designs but those of the baseline.
-bool AgreeOtherwise(const ResultTable& table, const Settings& baseline,
-                    const ResultRow& a, const ResultRow& b) {
-  return std::all_of(table.design.begin(), table.design.end(),
-                     [&](const std::string& key) {
-                       return baseline.Find(key) != nullptr ||
-                              ValueOf(a.task, key) == ValueOf(b.task, key);
-                     });
+/// Keys in which a run may differ from its partner.
+std::set<std::string> FreeKeys(const Settings& baseline, const ResultRow& a,
+                               const ResultRow& b) {
+  std::set<std::string> keys;
+  for (const auto& entry : baseline.entries()) keys.insert(entry.first);
+  if (keys.count("row") == 0) return keys;
+  for (const ResultRow* row : {&a, &b}) {
+    keys.insert(row->task.grouped.begin(), row->task.grouped.end());
+  }
+  return keys;
 }
 
-/// The run that `row` is compared with; null if there is none, or several.
-const ResultRow* FindPartner(const ResultTable& table, const Settings& baseline,
-                             const std::vector<const ResultRow*>& candidates,
-                             const ResultRow& row) {
-  std::vector<const ResultRow*> same, agreeing;
-  for (const ResultRow* candidate : candidates) {
-    if (candidate->task.sequence != row.task.sequence ||
-        candidate->task.repeat != row.task.repeat) {
-      continue;
-    }
-    same.push_back(candidate);
-    if (AgreeOtherwise(table, baseline, *candidate, row)) {
-      agreeing.push_back(candidate);
+/// Whether a setting is the same, or was resolved to the same.
+bool HasSameValue(const std::string& key, const ResultRow& a,
+                  const ResultRow& b) {
+  if (ValueOf(a.task, key) == ValueOf(b.task, key)) return true;
+  const auto in_a = a.parts.find(key), in_b = b.parts.find(key);
+  return in_a != a.parts.end() && in_b != b.parts.end() &&
+         in_a->second == in_b->second;
+}
+
+bool HaveSameSettings(const std::set<std::string>& free, const ResultRow& a,
+                      const ResultRow& b) {
+  for (const ResultRow* row : {&a, &b}) {
+    for (const auto& entry : row->task.settings.entries()) {
+      const std::string& key = entry.first;
+      if (free.count(key) == 0 && !HasSameValue(key, a, b)) return false;
     }
   }
-  const auto& found = agreeing.empty() ? same : agreeing;
-  return found.size() == 1 ? found.front() : nullptr;
+  return true;
+}
+
+/// Whether a key is an option that sets no other one.
+bool SetsItselfAlone(const std::string& key, const NamedValues& parts) {
+  return key == "row" || (key != "preset" && parts.count(key) > 0);
+}
+
+/// What decides the result, without what these keys set.
+NamedValues PartsBut(const std::set<std::string>& free, NamedValues parts) {
+  for (const std::string& key : free) {
+    parts.erase(key);
+    if (key == "terms") {
+      const auto first = parts.lower_bound("terms.");
+      parts.erase(first, parts.lower_bound("terms/"));
+    }
+  }
+  return parts;
+}
+
+/// Whether two runs agree in all that decides results but for `free` keys.
+bool AgreeBut(const std::set<std::string>& free, const ResultRow& a,
+              const ResultRow& b) {
+  if (!HaveSameSettings(free, a, b)) return false;
+  const bool comparable =
+      !a.parts.empty() && !b.parts.empty() &&
+      std::all_of(free.begin(), free.end(), [&](const std::string& key) {
+        return SetsItselfAlone(key, a.parts) || SetsItselfAlone(key, b.parts);
+      });
+  return !comparable || DifferencesBeyondRepeats(PartsBut(free, a.parts),
+                                                 PartsBut(free, b.parts))
+                            .empty();
+}
+
+/// Whether another system has made it.
+bool IsForeign(const ResultRow& row) {
+  return row.IsComplete() && row.identity.empty() && !row.task.row.empty() &&
+         row.task.settings.empty();
+}
+
+/// The run that `row` is compared with; null if there is none.
+const ResultRow* FindPartner(const Settings& baseline,
+                             const std::vector<const ResultRow*>& candidates,
+                             const ResultRow& row) {
+  std::vector<const ResultRow*> found;
+  for (const ResultRow* candidate : candidates) {
+    const bool same = candidate->task.sequence == row.task.sequence &&
+                      candidate->task.repeat == row.task.repeat;
+    if (!same) continue;
+    const auto free = FreeKeys(baseline, *candidate, row);
+    if (IsForeign(row) || AgreeBut(free, *candidate, row)) {
+      found.push_back(candidate);
+    }
+  }
+  const bool none = found.empty() || (IsForeign(row) && found.size() > 1);
+  return none ? nullptr : found.front();
 }
 
 void AddDifference(const ResultRow& row, const ResultRow& partner,
@@ -179,25 +238,31 @@ void CheckBaseline(const ResultTable& table, const std::string& baseline) {
   FindCandidates(table, baseline);
 }
 
-std::vector<ResultGroup> CompareWithBaseline(const ResultTable& table,
-                                             const std::string& baseline) {
+Comparison CompareWithBaseline(const ResultTable& table,
+                               const std::string& baseline) {
   const Settings wanted = ReadBaseline(table, baseline);
   const std::vector<const ResultRow*> candidates =
       FindCandidates(table, baseline);
   std::set<std::string> sequences;
   for (const ResultRow& row : table.rows) sequences.insert(row.task.sequence);
+  Comparison comparison;
   Groups groups, over_all;
   for (const ResultRow& row : table.rows) {
     if (IsBaseline(row, wanted)) continue;
-    const ResultRow* partner = FindPartner(table, wanted, candidates, row);
-    if (partner == nullptr) continue;
+    const ResultRow* partner = FindPartner(wanted, candidates, row);
+    if (partner == nullptr) {
+      comparison.unpaired += row.IsComplete() ? 1 : 0;
+      continue;
+    }
     AddDifference(row, *partner, &groups.At(row.task.sequence, row.values));
     AddDifference(row, *partner, &over_all.At(kAllSequences, row.values));
   }
-  std::vector<ResultGroup> described = groups.Describe();
-  if (sequences.size() < 2) return described;
-  for (ResultGroup& group : over_all.Describe()) described.push_back(group);
-  return described;
+  comparison.groups = groups.Describe();
+  if (sequences.size() < 2) return comparison;
+  for (ResultGroup& group : over_all.Describe()) {
+    comparison.groups.push_back(std::move(group));
+  }
+  return comparison;
 }
 
 }  // namespace splitfusion

@@ -43,14 +43,24 @@ std::vector<ResultGroup> GroupResults(const ResultTable& table);
 ///     vary.
 void CheckBaseline(const ResultTable& table, const std::string& baseline);
 
-/// Differences to the baseline, run by run: the same sequence and repeat, and
-/// the same values of all designs' keys that the baseline does not name. Groups
-/// of every sequence, then, if there are several, over all of them; the
-/// baseline's own runs and runs without a partner are left out.
+/// Differences to a baseline.
+struct Comparison {
+  /// Of every sequence, then, if there are several, over all of them.
+  std::vector<ResultGroup> groups;
+  int unpaired = 0;  ///< Complete runs that nothing can be compared with.
+};
+
+/// Differences to the baseline, run by run. The partner of a run is the
+/// baseline's run of the same sequence and repeat that agrees with it in
+/// everything else that decides results: in the resolved options, but for those
+/// that the baseline's keys set, or, if it is a row, the keys of both rows.
+/// Where such a key may set any option, as `preset` and `flagfile` do, the
+/// other settings are compared instead. A foreign row has no settings: it is
+/// compared if the baseline has one run alone.
 ///
 /// @throw InputError as CheckBaseline().
-std::vector<ResultGroup> CompareWithBaseline(const ResultTable& table,
-                                             const std::string& baseline);
+Comparison CompareWithBaseline(const ResultTable& table,
+                               const std::string& baseline);
 
 }  // namespace splitfusion
 

@@ -12,6 +12,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/experiment/outdated_runs.h"
 #include "splitfusion/lib/experiment/run_state.h"
+#include "splitfusion/lib/experiment/task_evaluation.h"
 
 namespace splitfusion {
 namespace {
@@ -89,6 +90,8 @@ void FillFigures(const std::string& run, const RunState& state,
         std::numeric_limits<double>::quiet_NaN();
   }
   FillCost(record.cost, &row->figures);
+  if (row->task.ground_truth.empty()) return;
+  MarkOutdated(ForeignEvaluation(record, run), row);
 }
 
 /// What the run directory and the record say of a row besides its status.
@@ -168,8 +171,7 @@ void FillValues(ResultTable* table) {
       std::any_of(rows.begin(), rows.end(),
                   [](const ResultRow& row) { return !row.task.row.empty(); });
   if (has_rows) table->keys.push_back(kRowKey);
-  for (const ResultRow& row : rows) AddKeys(row.task.design, &table->design);
-  AddKeys(table->design, &table->keys);
+  for (const ResultRow& row : rows) AddKeys(row.task.design, &table->keys);
   for (const ResultRow& row : rows) AddKeys(row.task.grouped, &table->keys);
   AddKeys(DifferingKeys(rows), &table->keys);
   for (ResultRow& row : table->rows) {

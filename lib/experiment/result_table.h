@@ -33,8 +33,6 @@ struct ResultTable {
   /// What varies: `row` if there are rows, keys of grids, designs and rows, and
   /// keys in which runs of one sequence differ.
   std::vector<std::string> keys;
-  /// Those of `keys` that grids and designs vary.
-  std::vector<std::string> design;
   std::vector<ResultRow> rows;  ///< In the order of the experiments.
 };
 

@@ -1,6 +1,7 @@
 #include "splitfusion/lib/experiment/row_file.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <utility>
@@ -72,6 +73,9 @@ std::string RowKey(const std::string& identity, const NamedValues& evaluation) {
 }
 
 RowFile::RowFile(const std::string& path) {
+  if (std::filesystem::is_directory(path)) {
+    throw InputError(path + ": is a folder: expected a file of rows");
+  }
   std::ifstream stream(path);
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {

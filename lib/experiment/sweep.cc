@@ -212,9 +212,7 @@ std::string SweepProgress::ToString() const {
     text += " FAILED: " + record.Error();
   } else if (last.kept) {
     text += " kept";
-    if (!last.evaluated_anew.empty()) {
-      text += ", evaluated again: " + last.evaluated_anew;
-    }
+    if (!last.evaluation.empty()) text += ", " + last.evaluation;
   } else {
     text += " done";
     if (std::isfinite(record.cost.wall_seconds)) {
@@ -231,6 +229,7 @@ SweepOutcome RunSweep(const Experiment& experiment, const SweepOptions& options,
   const std::vector<Task> tasks = PlanTasks(experiment);
   RunCommand command(options.run_program, options.threads);
   CheckBeforeRuns(tasks, options, &command);
+  if (options.planned) options.planned();
   MakeFolder(options.output);
   AddExperiment(ExperimentFolder(options.output), experiment);
   return SweepQueue(tasks, options, command, progress, stop).Run();

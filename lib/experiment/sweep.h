@@ -19,6 +19,9 @@ struct SweepOptions {
   bool fail_fast = false;    ///< Nothing is started after a failure.
   TaskRunnerOptions runner;  ///< How a task is run.
   std::string row_file;      ///< Figures that count as done; may be empty.
+  /// Called before the first run, when nothing can be refused any more; may be
+  /// empty.
+  std::function<void()> planned;
 
   /// @throw InputError if a program is missing or a value out of its range.
   void Check() const;

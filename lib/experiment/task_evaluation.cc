@@ -3,10 +3,12 @@
 #include <set>
 
 #include "splitfusion/lib/base/content_cache.h"
+#include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/ground_truth.h"
 #include "splitfusion/lib/experiment/child_process.h"
 #include "splitfusion/lib/experiment/scratch_folder.h"
+#include "splitfusion/lib/report/run_paths.h"
 
 namespace splitfusion {
 namespace {
@@ -30,6 +32,11 @@ NamedValues EvaluationParts(const Task& task) {
   return parts;
 }
 
+bool GroundTruthIsGone(const Task& task) {
+  return !task.ground_truth.empty() &&
+         GroundTruthFiles(task.ground_truth).empty();
+}
+
 std::vector<std::string> EvaluateCommand(const std::string& program,
                                          const Task& task,
                                          const std::string& run) {
@@ -39,6 +46,13 @@ std::vector<std::string> EvaluateCommand(const std::string& program,
     arguments.push_back("--" + key + "=" + value);
   }
   return arguments;
+}
+
+std::string ForeignEvaluation(const TaskRecord& record,
+                              const std::string& run) {
+  const bool same = record.evaluation.empty() ||
+                    record.evaluation == HashOfFile(RunPaths(run).Evaluation());
+  return same ? "" : "evaluated by hand";
 }
 
 void CheckEvaluateFlags(const std::string& program,

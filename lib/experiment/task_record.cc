@@ -69,6 +69,7 @@ Json RecordJson(const TaskRecord& record) {
   json["run_id"] = record.run_id;
   json["evaluated_id"] = record.evaluated_id;
   json["evaluated_by"] = record.evaluated_by;
+  json["evaluation"] = record.evaluation;
   json["wall_seconds"] = KnownNumber(record.cost.wall_seconds);
   json["cpu_seconds"] = KnownNumber(record.cost.cpu_seconds);
   json["peak_memory_bytes"] = KnownNumber(record.cost.peak_memory_bytes);
@@ -92,6 +93,7 @@ TaskRecord RecordFromJson(const Json& json) {
   record.run_id = json.at("run_id").get<std::string>();
   record.evaluated_id = json.at("evaluated_id").get<std::string>();
   record.evaluated_by = ValuesFromJson(json.at("evaluated_by"));
+  record.evaluation = json.value("evaluation", "");
   record.cost = {MeasuredNumber(json.at("wall_seconds")),
                  MeasuredNumber(json.at("cpu_seconds")),
                  MeasuredNumber(json.at("peak_memory_bytes"))};

@@ -47,6 +47,7 @@ struct TaskRecord {
   std::string run_id;          ///< Of the result that counts.
   std::string evaluated_id;    ///< Run that evaluation.json is about.
   NamedValues evaluated_by;    ///< See EvaluationParts().
+  std::string evaluation;      ///< Hash of what sf_evaluate wrote then.
   RunCost cost;                ///< Of the run that counts.
   std::string host;            ///< That worked on it last.
   std::string started;         ///< UTC, ISO 8601.

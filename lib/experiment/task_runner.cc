@@ -3,10 +3,13 @@
 #include <filesystem>
 #include <utility>
 
+#include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/random_id.h"
 #include "splitfusion/lib/experiment/run_state.h"
 #include "splitfusion/lib/experiment/task_evaluation.h"
+#include "splitfusion/lib/report/run_folder.h"
 
 namespace splitfusion {
 namespace {
@@ -43,10 +46,27 @@ std::string StaleEvaluation(const TaskRecord& record, const std::string& run_id,
   if (!changes.empty()) return changes;
   try {
     ReadFigures(run, /*evaluated=*/true);
-    return "";
+    return ForeignEvaluation(record, run);
   } catch (const InputError& error) {
     return error.what();
   }
+}
+
+/// Sets aside a run directory that sf_run could not use: in the folder of an
+/// experiment it is the batch's own. What was wrong with it; empty if nothing.
+///
+/// @throw InputError if it cannot be renamed.
+std::string SetAside(const std::string& run) {
+  if (LivingHolder(RunPaths(run).Lock())) return "";
+  const std::string damage = RunFolderDamage(run);
+  if (damage.empty()) return "";
+  const std::string aside = run + ".before-" + RandomId().substr(0, 8);
+  std::error_code error;
+  fs::rename(run, aside, error);
+  if (error) {
+    throw InputError(aside + ": cannot be written (" + error.message() + ")");
+  }
+  return damage + "; it is now " + fs::path(aside).filename().string();
 }
 
 /// What is known of what a run has used, where its last part has ended.
@@ -91,10 +111,16 @@ TaskResult TaskRunner::Run(const Task& task, int known_attempts) const {
   TaskRecord& record = result.record;
   const auto lock = DirectoryLock::TryAcquire(folder_.Lock(task.name));
   record = ReadTaskRecord(folder).value_or(TaskRecord());
+  const Task before = record.task;
   record.task = task;
   if (!lock) {
     result.passed_over = true;
     return result;
+  }
+  if (task.ground_truth.empty() && !record.evaluated_by.empty()) {
+    // A truth that is gone is missed, not forgotten.
+    record.task.ground_truth = before.ground_truth;
+    record.task.evaluate = before.evaluate;
   }
   const bool done_meanwhile =
       record.attempts > known_attempts && HasEnded(record.state);
@@ -162,6 +188,7 @@ ChildResult TaskRunner::CallRun(const Task& task, bool keep) const {
 bool TaskRunner::Reconstruct(TaskResult* result) const {
   TaskRecord& record = result->record;
   const std::string run = folder_.Run(record.task.name);
+  const std::string set_aside = SetAside(run);
   const RunState before = ReadRunState(run);
   const bool was_complete = before.IsComplete() &&
                             before.Id() == record.run_id &&
@@ -182,7 +209,8 @@ bool TaskRunner::Reconstruct(TaskResult* result) const {
   result->kept = before.IsComplete() && before.Id() == after.Id();
   if (!result->kept) {
     record.cost = CostOf(child, *after.marker);
-    record.reason = ReasonOf(before, after, damage);
+    record.reason =
+        set_aside.empty() ? ReasonOf(before, after, damage) : set_aside;
   } else if (record.run_id != after.Id()) {
     record.cost = RunCost();  // It ended unwatched.
   }
@@ -216,6 +244,20 @@ ChildResult TaskRunner::CallEvaluate(const Task& task) const {
       log.string(), stop_, options_.limits);
 }
 
+bool TaskRunner::KeepEvaluation(TaskResult* result) const {
+  TaskRecord& record = result->record;
+  const std::string gone = "ground truth is gone: " + record.task.ground_truth;
+  const std::string stale =
+      StaleEvaluation(record, record.run_id, record.evaluated_by,
+                      folder_.Run(record.task.name));
+  if (stale.empty()) {
+    result->evaluation = "and its evaluation, for " + gone;
+    return true;
+  }
+  Fail(TaskState::kUnevaluated, 2, {gone}, &record);
+  return false;
+}
+
 bool TaskRunner::Evaluate(TaskResult* result) const {
   TaskRecord& record = result->record;
   if (record.task.ground_truth.empty()) {
@@ -223,11 +265,12 @@ bool TaskRunner::Evaluate(TaskResult* result) const {
     return true;
   }
   const std::string run = folder_.Run(record.task.name);
+  if (GroundTruthIsGone(record.task)) return KeepEvaluation(result);
   const NamedValues parts = EvaluationParts(record.task);
   std::string why = StaleEvaluation(record, record.run_id, parts, run);
   if (why.empty() && options_.overwrite) why = "--overwrite";
   if (why.empty()) return true;
-  if (result->kept) result->evaluated_anew = why;
+  if (result->kept) result->evaluation = "evaluated again: " + why;
   // What an earlier run was worth must not stand for this one's.
   record.evaluated_id.clear();
   const ChildResult child = CallEvaluate(record.task);
@@ -235,9 +278,13 @@ bool TaskRunner::Evaluate(TaskResult* result) const {
   if (child.exit_code == 0) {
     record.evaluated_by = parts;
     record.evaluated_id = record.run_id;
+    record.evaluation.clear();
     const std::string damage =
         StaleEvaluation(record, record.run_id, parts, run);
-    if (damage.empty()) return true;
+    if (damage.empty()) {
+      record.evaluation = HashOfFile(RunPaths(run).Evaluation());
+      return true;
+    }
     record.evaluated_id.clear();
     lines.push_back(damage);
   }

@@ -22,11 +22,11 @@ struct TaskRunnerOptions {
 
 /// What became of a task.
 struct TaskResult {
-  bool passed_over = false;    ///< Another process works on it.
-  bool kept = false;           ///< The run had been finished before.
-  std::string evaluated_anew;  ///< Why a kept run was; empty if it was not.
-  bool stopped = false;        ///< Was asked to stop, and did.
-  TaskRecord record;           ///< As it is now.
+  bool passed_over = false;  ///< Another process works on it.
+  bool kept = false;         ///< The run had been finished before.
+  std::string evaluation;    ///< A remark on that of a kept run.
+  bool stopped = false;      ///< Was asked to stop, and did.
+  TaskRecord record;         ///< As it is now.
 };
 
 /// Runs single tasks of an experiment.
@@ -49,6 +49,7 @@ class TaskRunner {
   bool Reconstruct(TaskResult* result) const;
   ChildResult CallRun(const Task& task, bool keep) const;
   bool Evaluate(TaskResult* result) const;
+  bool KeepEvaluation(TaskResult* result) const;
   ChildResult CallEvaluate(const Task& task) const;
   bool TakeRecorded(TaskRecord* record) const;
   bool Accept(const ChildResult& child, TaskRecord* record) const;

@@ -10,12 +10,11 @@ namespace {
 // Measured on sequences of 320x240 and 640x480, and rounded down: the check is
 // for disks on which a run cannot end.
 constexpr std::uint64_t kModelBytesPerPixel = 200;
+constexpr std::uint64_t kCheckpointBytesPerPixel = 190;
 constexpr std::uint64_t kPictureBytesPerPixel = 4;
 constexpr std::uint64_t kBytesPerFrame = 20000;
 
-std::string Megabytes(std::uint64_t bytes) {
-  return std::to_string((bytes + 999999) / 1000000) + " MB";
-}
+constexpr std::uint64_t kMegabyte = 1000000;
 
 }  // namespace
 
@@ -24,7 +23,9 @@ std::uint64_t EstimatedBytes(const RunExtent& extent) {
   const std::uint64_t frames = extent.frames;
   const std::uint64_t pictures =
       extent.pictures_every > 0 ? frames / extent.pictures_every + 1 : 0;
-  return pixels * (kModelBytesPerPixel + pictures * kPictureBytesPerPixel) +
+  const std::uint64_t states = extent.checkpoints ? 1 : 0;
+  return pixels * (kModelBytesPerPixel + states * kCheckpointBytesPerPixel +
+                   pictures * kPictureBytesPerPixel) +
          frames * kBytesPerFrame;
 }
 
@@ -32,9 +33,11 @@ void CheckDiskSpace(const std::string& folder, std::uint64_t bytes) {
   std::error_code error;
   const auto space = std::filesystem::space(folder, error);
   if (error || space.available >= bytes) return;
-  throw InputError(folder + ": the disk has " + Megabytes(space.available) +
-                   " left: expected " + Megabytes(bytes) +
-                   " at least for this run");
+  throw InputError(folder + ": the disk has " +
+                   std::to_string(space.available / kMegabyte) +
+                   " MB left: expected " +
+                   std::to_string((bytes + kMegabyte - 1) / kMegabyte) +
+                   " MB at least for this run");
 }
 
 }  // namespace splitfusion

@@ -134,6 +134,29 @@ void RemoveRun(const RunPaths& paths) {
 
 }  // namespace
 
+std::string RunFolderDamage(const std::string& root) try {
+  const RunPaths paths(root);
+  const std::string unfinished = paths.Unfinished();
+  if (!fs::exists(root)) return "";
+  const std::optional<RunMarker> begun = ReadRunMarker(unfinished);
+  const bool published = ReadRunMarker(root).has_value();
+  // Killed while it was put into place, it goes on.
+  if (begun && begun->phase != PublishingPhase::kNone) return "";
+  if (!published && HoldsOthers(root, {"lock", "unfinished"})) {
+    return root +
+           ": is not empty and not a run (it has no run.json): expected a new "
+           "or empty folder, or a run to overwrite; move it away";
+  }
+  if (begun || !fs::exists(unfinished) || !HoldsNamesOfRuns(unfinished)) {
+    return "";
+  }
+  return unfinished +
+         ": is not of a run (it has no run.json): expected a folder of sf_run; "
+         "move it away";
+} catch (const InputError& error) {
+  return std::string(error.what()) + "; move its folder away";
+}
+
 RunFolder::RunFolder(std::string root, RunIdentity identity,
                      const RunFolderOptions& options)
     : root_(std::move(root)),
@@ -142,6 +165,8 @@ RunFolder::RunFolder(std::string root, RunIdentity identity,
       identity_(std::move(identity)) {
   MakeFolder(root_);
   Lock();
+  const std::string damage = RunFolderDamage(root_);
+  if (!damage.empty()) throw InputError(damage);
   Recover();
   Decide(options);
 }
@@ -170,11 +195,6 @@ void RunFolder::Recover() {
 void RunFolder::Decide(const RunFolderOptions& options) {
   const std::optional<RunMarker> published = ReadRunMarker(root_);
   const std::optional<RunMarker> begun = ReadRunMarker(unfinished_.root());
-  if (!published && HoldsOthers(root_, {"lock", "unfinished"})) {
-    throw InputError(root_ +
-                     ": is not empty and not a run (it has no run.json): "
-                     "expected a new or empty folder, or a run to overwrite");
-  }
   const bool can_resume = options.resume && begun && begun->IsSame(identity_);
   const bool finished =
       published && published->status == RunStatus::kComplete &&
@@ -213,14 +233,7 @@ void RunFolder::DecideBesides(const std::optional<RunMarker>& published,
 }
 
 void RunFolder::RemoveUnfinished() {
-  if (!fs::exists(unfinished_.root())) return;
-  if (!ReadRunMarker(unfinished_.root()) &&
-      HoldsNamesOfRuns(unfinished_.root())) {
-    throw InputError(unfinished_.root() +
-                     ": is not of a run (it has no run.json): expected a "
-                     "folder of sf_run");
-  }
-  RemoveRun(unfinished_);
+  if (fs::exists(unfinished_.root())) RemoveRun(unfinished_);
 }
 
 void RunFolder::Begin() {
@@ -249,12 +262,16 @@ void RunFolder::Resume(RunMarker begun) {
   }
   RemoveTemporaries(unfinished_.root());
   marker_ = std::move(begun);
+  const bool killed = marker_.status == RunStatus::kRunning;
   marker_.status = RunStatus::kRunning;
   marker_.error.clear();
   WriteRunMarker(unfinished_.root(), marker_);
   start_ = fs::exists(unfinished_.Checkpoint()) ? RunStart::kResumed
                                                 : RunStart::kFresh;
-  if (start_ == RunStart::kFresh) StartAfresh("killed before a checkpoint");
+  if (start_ == RunStart::kFresh) {
+    StartAfresh(killed ? "killed before a checkpoint"
+                       : "begins anew: had ended before a checkpoint");
+  }
 }
 
 void RunFolder::StartAfresh(const std::string& why) {

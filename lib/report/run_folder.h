@@ -24,6 +24,10 @@ enum class RunStart {
   kResumed,   ///< From the checkpoint of unfinished().
 };
 
+/// Why no run can begin or go on in a folder, whatever its options: a marker is
+/// damaged, or files lie there that no marker names. Empty if one can.
+std::string RunFolderDamage(const std::string& root);
+
 /// A run directory while a run goes on in it. The run writes into
 /// RUN/unfinished, a run directory of its own, and is put into place when it
 /// has ended: files of an older result are deleted by the list in its marker,

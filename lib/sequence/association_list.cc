@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
 #include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {
@@ -22,8 +23,7 @@ namespace fs = std::filesystem;
 template <typename Parse>
 void ForEachLine(const std::string& path, const std::string& expected,
                  const Parse& parse) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(path + ": cannot be opened");
+  std::ifstream stream = OpenTextFile(path);
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     const std::size_t begin = line.find_first_not_of(" \t\r");

@@ -4,22 +4,16 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <map>
 #include <sstream>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
 
 namespace splitfusion {
 namespace {
-
-std::ifstream OpenText(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(path + ": cannot be opened");
-  return stream;
-}
 
 /// Next line that is neither blank nor a comment; the comment is cut off.
 bool NextLine(std::istream& stream, std::string* line, int* number) {
@@ -55,7 +49,7 @@ std::string KeyList() {
 }
 
 std::map<std::string, double> ReadKeys(const std::string& path) {
-  std::ifstream stream = OpenText(path);
+  std::ifstream stream = OpenTextFile(path);
   std::map<std::string, double> values;
   std::string line;
   for (int number = 0; NextLine(stream, &line, &number);) {
@@ -93,7 +87,7 @@ void Calibration::Check() const {
 }
 
 Calibration ReadCalibrationLine(const std::string& path) {
-  std::ifstream stream = OpenText(path);
+  std::ifstream stream = OpenTextFile(path);
   Calibration result;
   PinholeCamera& camera = result.camera;
   std::string line;
@@ -117,8 +111,7 @@ Calibration ReadCalibrationLine(const std::string& path) {
 void WriteCalibration(const std::string& path, const Calibration& calibration) {
   const PinholeCamera& camera = calibration.camera;
   WriteFileAtomically(path, [&](std::ostream& out) {
-    out << std::setprecision(17)
-        << "# fx fy cx cy width height depth_factor\n"
+    out << std::setprecision(17) << "# fx fy cx cy width height depth_factor\n"
         << camera.fx << ' ' << camera.fy << ' ' << camera.cx << ' ' << camera.cy
         << ' ' << camera.width << ' ' << camera.height << ' '
         << calibration.depth_scale << '\n';

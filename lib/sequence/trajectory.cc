@@ -1,17 +1,16 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
 
 namespace splitfusion {
 
 Trajectory ReadTumTrajectory(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(path + ": cannot be opened");
+  std::ifstream stream = OpenTextFile(path);
   Trajectory trajectory;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {

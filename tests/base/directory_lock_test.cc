@@ -164,6 +164,14 @@ TEST(DirectoryLock, OneOfManyTakesAStaleOneOver) {
   }
 }
 
+TEST(DirectoryLock, AFolderOfItsNameIsNamed) {
+  const TemporaryFolder folder;
+  folder.Write("lock/file", "");
+  ExpectInputError([&] { DirectoryLock::TryAcquire(folder / "lock"); },
+                   "lock: is a folder");
+  EXPECT_FALSE(LivingHolder(folder / "lock"));
+}
+
 TEST(DirectoryLock, NeedsAFolder) {
   const TemporaryFolder folder;
   ExpectInputError([&] { DirectoryLock::TryAcquire(folder / "missing/lock"); },

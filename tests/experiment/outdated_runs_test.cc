@@ -89,6 +89,37 @@ TEST_F(OutdatedRuns, AChangedGroundTruthIsEvaluatedAgain) {
               HasSubstr("kept, evaluated again: ground_truth changed"));
 }
 
+TEST_F(OutdatedRuns, AnEvaluationByHandIsNotTaken) {
+  Sweep();
+  const std::string file = InRun(0, "evaluation.json");
+  const std::string own = folder_.Read(file);
+  folder_.Write(file, R"({"headline": {"ate_m": 9}})");
+  EXPECT_EQ(Table().rows[0].status, "outdated: evaluated by hand");
+  EXPECT_TRUE(std::isnan(Table().rows[0].figures.At("ate_m")));
+  EXPECT_EQ(DryRun(experiment_, options_)[0].second,
+            "to be evaluated: evaluated by hand");
+  Sweep();
+  EXPECT_EQ(Table().rows[0].status, "complete");
+  EXPECT_EQ(folder_.Read(file), own);
+  EXPECT_THAT(folder_.Read("out/progress.log"),
+              HasSubstr("kept, evaluated again: evaluated by hand"));
+}
+
+TEST_F(OutdatedRuns, AGroundTruthThatIsGoneIsMissed) {
+  Sweep();
+  const double ate = Table().rows[0].figures.At("ate_m");
+  std::filesystem::remove(folder_ / "data/room/groundtruth.txt");
+  experiment_.sequences = ReadSequences(folder_ / "data/room", "auto");
+  EXPECT_EQ(Sweep().failed, 0);
+  EXPECT_EQ(Table().rows[0].figures.At("ate_m"), ate);
+  EXPECT_THAT(folder_.Read("out/progress.log"),
+              HasSubstr("kept, and its evaluation, for ground truth is gone"));
+  WriteWeight("8");  // What is computed anew cannot be judged.
+  EXPECT_EQ(Sweep().failed, 1);
+  EXPECT_EQ(Table().rows[0].status, "not evaluated");
+  EXPECT_THAT(Table().rows[0].error, HasSubstr("ground truth is gone"));
+}
+
 TEST(Repeats, DifferInMillionthsOfTheirVoxelsOnly) {
   const NamedValues run = {{"object_voxel", "0.004"},
                            {"background_voxel", "0.01"}};

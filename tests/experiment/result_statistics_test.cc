@@ -38,7 +38,7 @@ ResultRow Row(const std::string& sequence, const std::string& weight,
 /// Two sequences, two weights, two repeats; the second run of b/8 failed.
 ResultTable Sample() {
   ResultTable table;
-  table.keys = table.design = {"weight"};
+  table.keys = {"weight"};
   table.rows = {Row("a", "4", 0, 0.010), Row("a", "4", 1, 0.020),
                 Row("a", "8", 0, 0.013), Row("a", "8", 1, 0.025),
                 Row("b", "4", 0, 0.100), Row("b", "4", 1, 0.200),
@@ -62,7 +62,7 @@ TEST(ResultStatistics, RepeatsHaveMeanAndScatter) {
 }
 
 TEST(ResultStatistics, DifferencesArePairedBySequenceAndRepeat) {
-  const auto groups = CompareWithBaseline(Sample(), "weight=4");
+  const auto groups = CompareWithBaseline(Sample(), "weight=4").groups;
   ASSERT_EQ(groups.size(), 3u);
   EXPECT_EQ(groups[0].sequence, "a");
   EXPECT_NEAR(Ate(groups[0]).mean, 0.004, 1e-12);
@@ -76,7 +76,7 @@ TEST(ResultStatistics, DifferencesArePairedBySequenceAndRepeat) {
 
 TEST(ResultStatistics, OtherDesignKeysStayTheSame) {
   ResultTable table = Sample();
-  table.keys = table.design = {"weight", "voxel"};
+  table.keys = {"weight", "voxel"};
   table.rows.clear();
   for (const char* voxel : {"1", "2"}) {
     for (const char* weight : {"4", "8"}) {
@@ -86,7 +86,7 @@ TEST(ResultStatistics, OtherDesignKeysStayTheSame) {
       table.rows.back().values.emplace_back(voxel);
     }
   }
-  const auto groups = CompareWithBaseline(table, "weight=4");
+  const auto groups = CompareWithBaseline(table, "weight=4").groups;
   ASSERT_EQ(groups.size(), 2u);
   EXPECT_EQ(Ate(groups[0]).mean, 4);
   EXPECT_EQ(Ate(groups[1]).mean, 8);
@@ -95,17 +95,69 @@ TEST(ResultStatistics, OtherDesignKeysStayTheSame) {
 TEST(ResultStatistics, RowsAreComparedByName) {
   ResultTable table = Sample();
   table.keys = {"row", "weight"};
-  table.design.clear();
   table.rows = {Row("a", "4", 0, 0.1), Row("a", "8", 0, 0.3)};
+  for (ResultRow& row : table.rows) row.task.grouped = {"weight"};
   table.rows[0].task.row = "base";
   table.rows[1].task.row = "stiff";
   table.rows[0].values = {"base", "4"};
   table.rows[1].values = {"stiff", "8"};
-  const auto groups = CompareWithBaseline(table, "base");
+  const auto groups = CompareWithBaseline(table, "base").groups;
   ASSERT_EQ(groups.size(), 1u);
   EXPECT_NEAR(Ate(groups[0]).mean, 0.2, 1e-12);
   ExpectInputError([&] { CompareWithBaseline(table, "none"); }, "baseline");
   ExpectInputError([&] { CompareWithBaseline(table, "x=1"); }, "x does not");
+}
+
+/// Runs of weights and values of another key.
+ResultTable TwoKeys(
+    const std::string& key,
+    const std::vector<std::pair<std::string, std::string>>& runs) {
+  ResultTable table;
+  table.keys = {"weight", key};
+  for (const auto& [weight, value] : runs) {
+    table.rows.push_back(Row("a", weight, 0, 0.1));
+    table.rows.back().task.settings.Set(key, value);
+    table.rows.back().values.push_back(value);
+  }
+  return table;
+}
+
+TEST(ResultStatistics, RunsOfOtherSettingsAreNoPartners) {
+  for (const char* key : {"object_voxel", "max_frames"}) {
+    const Comparison comparison =
+        CompareWithBaseline(TwoKeys(key, {{"8", "5"}, {"4", "8"}}), "weight=8");
+    EXPECT_TRUE(comparison.groups.empty());
+    EXPECT_EQ(comparison.unpaired, 1);
+  }
+  // Common options differ, which no grid does.
+  const Comparison exact = CompareWithBaseline(
+      TwoKeys("max_frames", {{"4", "3"}, {"8", "3"}, {"4", "4"}, {"8", "4"}}),
+      "weight=8");
+  EXPECT_EQ(exact.groups.size(), 2u);
+  EXPECT_EQ(exact.unpaired, 0);
+}
+
+TEST(ResultStatistics, PartnersHaveTheSameResolvedOptions) {
+  ResultTable table = TwoKeys("voxel", {{"8", "5"}, {"4", ""}});
+  const NamedValues common = {{"voxel", "5"}, {"lambda", "1"}};
+  for (ResultRow& row : table.rows) {
+    row.parts = common;
+    row.parts["weight"] = ValueOf(row.task, "weight");
+  }
+  EXPECT_EQ(CompareWithBaseline(table, "weight=8").unpaired, 0);
+  table.rows[1].parts["lambda"] = "2";  // As where a flagfile was edited.
+  EXPECT_EQ(CompareWithBaseline(table, "weight=8").unpaired, 1);
+}
+
+TEST(ResultStatistics, AForeignRowIsComparedIfItIsClearWithWhat) {
+  ResultTable table = TwoKeys("x", {{"8", "1"}, {"4", "1"}});
+  for (ResultRow& row : table.rows) row.identity = "known";
+  table.rows.push_back(Row("a", "", 0, 0.1));
+  table.rows.back().task.settings = Settings();
+  table.rows.back().task.row = "other system";
+  table.rows.back().values = {"", ""};
+  EXPECT_EQ(CompareWithBaseline(table, "weight=8").groups.size(), 2u);
+  EXPECT_EQ(CompareWithBaseline(table, "x=1").unpaired, 1);
 }
 
 void ExpectWidth(const std::string& text, std::size_t width) {
@@ -126,6 +178,29 @@ TEST(PrintedTable, ShowsWhatVariesAndIsKnown) {
       table, CompareWithBaseline(table, "weight=4"), "weight=4", 80);
   EXPECT_THAT(differences, HasSubstr("+4.00+-1.00"));
   EXPECT_THAT(differences, HasSubstr("(all)"));
+}
+
+TEST(PrintedTable, WhatTellsMostComesFirst) {
+  ResultTable table = Sample();
+  int number = 0;
+  for (ResultRow& row : table.rows) {
+    const double weight = row.values[0] == "8" ? 1 : 0;
+    const double noise = ++number % 3 == 0 ? 0.1 : 0;
+    row.figures.At("f_score_seen") = 0.5 + 0.01 * weight + noise;
+    row.figures.At("stretched") = 0.2 + 0.1 * weight + 1e-7 * noise;
+  }
+  const std::string text = PrintedSummary(table, GroupResults(table), 60);
+  const std::string heads = text.substr(0, text.find('\n'));
+  EXPECT_THAT(heads, HasSubstr("weight    n"));
+  EXPECT_THAT(heads, HasSubstr("stretched %"));
+  EXPECT_THAT(text, HasSubstr("+-0.000001"));
+  EXPECT_THAT(text.substr(heads.size()), HasSubstr("F seen %"));
+  const std::string differences = PrintedDifferences(
+      table, CompareWithBaseline(table, "weight=4"), "weight=4", 60);
+  EXPECT_THAT(differences, HasSubstr("stretched %\n"));
+  EXPECT_THAT(differences, HasSubstr("ATE mm, F seen %."));
+  EXPECT_THAT(PrintedDifferences(table, {{}, 2}, "weight=4", 100),
+              HasSubstr("2 runs are not compared"));
 }
 
 TEST(PrintedTable, HeadingsAreDocumented) {
@@ -163,7 +238,8 @@ TEST(PrintedTable, IsNeverWiderThanTheTerminal) {
     const auto groups = GroupResults(table);
     const std::string text = PrintedSummary(table, groups, width);
     ExpectWidth(text, width);
-    ExpectWidth(PrintedDifferences(table, groups, "weight=4", width), width);
+    ExpectWidth(PrintedDifferences(table, {groups, 0}, "weight=4", width),
+                width);
     if (width < 80) continue;
     EXPECT_THAT(text, HasSubstr("F seen %"));
     EXPECT_THAT(text, HasSubstr("Not shown (in the files):"));

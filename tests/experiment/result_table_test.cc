@@ -134,10 +134,12 @@ TEST_F(SweepTest, FilesHoldTheTable) {
   EXPECT_THAT(folder_.Read("r.csv"),
               HasSubstr(",bad,0,failed,4,\"a,b\",,,,,,,,,,,,,,,,\n"));
   const std::string path = folder_ / "r.sqlite";
-  EXPECT_EQ(Query(path,
-                  "SELECT sequence, status, frames, \"terms.arap.weight\""
-                  " * 2, f_score_seen, rpe_m FROM results ORDER BY 1"),
-            "bad;failed;null;8.0;null;null;room;complete;10.0;8.0;0.5;null;");
+  EXPECT_EQ(
+      Query(path,
+            "SELECT sequence, status, repeat, frames, \"terms.arap.weight\""
+            " * 2, f_score_seen, rpe_m FROM results ORDER BY 1"),
+      "bad;failed;0;null;8.0;null;null;"
+      "room;complete;0;10;8.0;0.5;null;");
 }
 
 TEST(Results, ColumnsAreDocumented) {

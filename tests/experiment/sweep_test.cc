@@ -153,6 +153,36 @@ TEST_F(SweepTest, ARunThatCannotBeJudgedSaysSo) {
   EXPECT_EQ(Table().rows[0].status, "complete");
 }
 
+TEST_F(SweepTest, ADamagedMarkerIsSetAsideAndTheRunDoneAgain) {
+  AddSequence("room");
+  Sweep();
+  // As sf_run, which takes no folder with a damaged marker.
+  const std::string good = WriteScript(folder_, "bin/good", kStubRun);
+  WriteScript(folder_, "bin/sf_run",
+              "#!/bin/sh\ncase \"$*\" in *print_identity*) ;; *) [ -e " +
+                  (folder_ / InRun(0, "number.txt")) +
+                  " ] && exit 2 ;; esac\nexec '" + good + "' \"$@\"\n");
+  const std::string run = InRun(0, "run.json");
+  for (const bool missing : {false, true}) {
+    folder_.Write(run, "{");
+    if (missing) fs::remove(folder_ / run);
+    EXPECT_EQ(Sweep().failed, 0);
+    EXPECT_EQ(Table().rows[0].status, "complete");
+  }
+  EXPECT_EQ(Starts("room"), 3);
+  EXPECT_THAT(folder_.Read("out/progress.log"),
+              HasSubstr("is damaged: expected the marker of a run"));
+  EXPECT_THAT(folder_.Read("out/progress.log"),
+              HasSubstr("; it is now run.before-"));
+}
+
+TEST_F(SweepTest, MoreThanAMillionRunsAreRefused) {
+  AddSequence("room");
+  experiment_.repeat = 100000000;
+  ExpectInputError([&] { DryRun(experiment_, options_); },
+                   "at most 1000000 runs");
+}
+
 TEST_F(SweepTest, UnknownKeysAreRefusedBeforeAnythingRuns) {
   AddSequence("room");
   experiment_.grid = ParseGrid("x=1,2; bogus=1", "grid");

@@ -17,6 +17,7 @@ TEST(EstimatedBytes, GrowsWithImagesFramesAndPictures) {
   EXPECT_GT(EstimatedBytes({640 * 480, 1000, 0}), EstimatedBytes(small));
   EXPECT_GT(EstimatedBytes({1280 * 960, 100, 0}), EstimatedBytes(small));
   EXPECT_GT(EstimatedBytes({640 * 480, 100, 10}), EstimatedBytes(small));
+  EXPECT_LT(EstimatedBytes({640 * 480, 100, 0, false}), EstimatedBytes(small));
 }
 
 TEST(CheckDiskSpace, SaysWhatIsLeftAndWhatIsNeeded) {

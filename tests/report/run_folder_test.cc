@@ -233,6 +233,12 @@ TEST_F(RunFolderTest, WithoutACheckpointItBeginsAnew) {
   EXPECT_EQ(run.start(), RunStart::kFresh);
 }
 
+TEST_F(RunFolderTest, ARefusedOneWasNotKilled) {
+  Open("8").RecordFailure("no disk");
+  EXPECT_EQ(ReadRunMarker(root() + "/unfinished")->error, "no disk");
+  EXPECT_EQ(Open("8").note(), "begins anew: had ended before a checkpoint");
+}
+
 TEST_F(RunFolderTest, AnInterruptedRunIsShownAndGoesOn) {
   Kill("8", "half");
   {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -73,6 +74,26 @@ TEST_F(HostileInputs, AMaskOfAnotherSizeIsFoundBeforeTheFirstFrame) {
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.errors, HasSubstr(last->string() + ": 40 bytes that are"));
   EXPECT_FALSE(folder_.Has("run/trajectory.txt"));
+}
+
+TEST_F(HostileInputs, APipeInPlaceOfATextIsRefused) {
+  Synthesize("--frames=2");
+  for (const char* name : {"associations.txt", "calibration.txt", "rgb.txt"}) {
+    const std::string path = folder_ / (std::string("sequence/") + name);
+    const std::string aside = folder_ / "aside";
+    const bool has = fs::exists(path);
+    if (has) fs::rename(path, aside);
+    ASSERT_EQ(mkfifo(path.c_str(), 0644), 0);
+    const std::string other = folder_ / "sequence/associations.txt";
+    const bool hides = std::string(name) == "rgb.txt" && fs::exists(other);
+    if (hides) fs::rename(other, folder_ / "other");
+    const ProgramResult result = Run("run");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.errors, HasSubstr(path + ": is no regular file"));
+    fs::remove(path);
+    if (has) fs::rename(aside, path);
+    if (hides) fs::rename(folder_ / "other", other);
+  }
 }
 
 TEST_F(HostileInputs, LongClassNamesAreCutInTheNamesOfFolders) {

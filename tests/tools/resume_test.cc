@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -294,6 +295,20 @@ TEST_F(Resume, OneStateCanBeGoneOnFromWithOtherTerms) {
       "none", std::string(kOptions) + " --at=13 --from=" + (folder_ / "base"));
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.errors, HasSubstr("checkpoints/000013.bin"));
+  const ProgramResult alone = Run("none", "--at=12");
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_THAT(alone.errors, HasSubstr("at = 12: expected --from"));
+  // Other images of the same size.
+  std::string image;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(folder_ / "sequence/rgb")) {
+    image = std::max(image, entry.path().string());
+  }
+  std::ofstream(image, std::ios::app) << "x";
+  const ProgramResult differs = Run("none", from + (folder_ / "base"));
+  EXPECT_EQ(differs.exit_code, 2);
+  EXPECT_THAT(differs.errors, HasSubstr("input.frames differs"));
+  EXPECT_FALSE(folder_.Has("none/run.json"));
 }
 
 TEST_F(Resume, TheIdentityIsOfContentsNotOfNames) {

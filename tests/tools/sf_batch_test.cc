@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 #include <thread>
+#include <vector>
 
 #include "support/program.h"
 #include "support/repository.h"
@@ -156,10 +157,13 @@ TEST_F(SfBatch, SaysWhatItExpects) {
 
 TEST_F(SfBatch, RefusesBeforeTheFirstRunWhatTheTablesWouldRefuse) {
   AddSequence("room");
+  folder_.Write("file", "");
   const std::string arguments = Arguments("room", "out") + " --grid=x=1,2";
-  for (const std::string flag :
-       {"--baseline=x=3", "--baseline=none", "--foreign=a:hall=t.txt",
-        "--foreign='a:room=t.txt; a:room=u.txt'", "--evaluate=nope=1"}) {
+  const std::string folder = "--rows_csv=" + (folder_ / "data");
+  for (const std::string& flag : std::vector<std::string>{
+           "--baseline=x=3", "--baseline=none", "--foreign=a:hall=t.txt",
+           "--foreign='a:room=t.txt; a:room=u.txt'", "--evaluate=nope=1",
+           "--repeat=100000000", folder}) {
     for (const std::string dry : {"", " --dry_run"}) {
       const ProgramResult result =
           RunProgram("sf_batch", arguments + " " + flag + dry);
@@ -167,6 +171,11 @@ TEST_F(SfBatch, RefusesBeforeTheFirstRunWhatTheTablesWouldRefuse) {
       EXPECT_FALSE(folder_.Has("out")) << flag;
     }
   }
+  EXPECT_EQ(RunProgram("sf_batch",
+                       arguments + " --rows_csv=" + (folder_ / "file/r.csv"))
+                .exit_code,
+            2);
+  EXPECT_FALSE(folder_.Has("out"));
   const std::string file = folder_.Write("e.json", R"({"baseline": "x=3"})");
   EXPECT_THAT(
       RunProgram("sf_batch", arguments + " --experiment=" + file).errors,

@@ -110,6 +110,11 @@ TEST_F(SfEvaluate, SaysWhenTheRunIsUnfinished) {
   result = Run(arguments);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_THAT(result.output, HasSubstr(text));
+  folder_.Write("begun/unfinished/run.json", "{}");
+  result = Run("--run=" + (folder_ / "begun"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors,
+              HasSubstr("/begun: holds an unfinished run alone"));
 }
 
 TEST_F(SfEvaluate, FollowsQueryPoints) {
