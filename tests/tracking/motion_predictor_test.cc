@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace splitfusion {
 namespace {
 
@@ -36,7 +38,7 @@ TEST(MotionPredictor, CarriesHiddenSurfacesOnByTheUsualStepOfTheirCenter) {
   predictor.Record(At(x += 0.5, 40), center, Placement::kTracked);
   // It comes to rest while nothing is seen of it.
   double way = 0;
-  for (int i = 1; i < 200; ++i) {
+  for (int i = 0; i < 200; ++i) {
     predictor.Record(At(x, 40), center, Placement::kHidden);
     EXPECT_TRUE(predictor.velocity().linear().isIdentity(1e-12));
     EXPECT_TRUE(predictor.velocity().translation().isApprox(
@@ -57,8 +59,7 @@ TEST(MotionPredictor, TheJumpOfASurfaceThatIsBackIsNoVelocity) {
   EXPECT_NEAR(predictor.velocity().translation().x(), 0.01, 1e-12);
   // Neither is it a usual step.
   predictor.Record(At(0.41), Eigen::Vector3d::Zero(), Placement::kHidden);
-  EXPECT_NEAR(predictor.velocity().translation().x(),
-              0.01 * std::exp(-1 / 15.0), 1e-12);
+  EXPECT_NEAR(predictor.velocity().translation().x(), 0.01, 1e-12);
 }
 
 TEST(MotionPredictor, AfterLostFramesTheVelocityIsThatOfOneFrame) {
