@@ -35,7 +35,7 @@ struct RigidMotion {
   Eigen::AlignedBox3f extent;  // Of a block, counted from its base.
 };
 
-constexpr std::size_t kBatch = 32;  // Blocks.
+constexpr std::size_t kBatch = 32;  // Speed: blocks.
 
 /// Some blocks of a volume that may change.
 struct FoundBlocks {

@@ -32,7 +32,7 @@ struct Range {
 /// Pixels that a box in front of the camera reaches along one axis.
 Range PixelsOf(const Eigen::AlignedBox3f& box, int axis, float focal,
                float center, int size) {
-  constexpr float kMargin = 1;  // Rounding to pixels, and of floats.
+  constexpr float kMargin = 1;  // Maths: pixels, of rounding to them.
   const float near = focal / box.min().z(), far = focal / box.max().z();
   const float low = box.min()[axis], high = box.max()[axis];
   const float begin = std::min(low * near, low * far) + center - kMargin;
@@ -100,7 +100,7 @@ void FusionImage::FillTiles(const DepthObservation& observation, int tile_row) {
 }
 
 float FusionImage::Farthest(const Eigen::AlignedBox3f& box) const {
-  constexpr float kDepthMargin = 1e-3f;  // Metres; rounding.
+  constexpr float kDepthMargin = 1e-3f;  // Maths: metres; rounding.
   if (!(box.max().z() > kNear)) return -kInfinity;
   if (!(box.min().z() > kNear)) return kInfinity;
   const Range u = PixelsOf(box, 0, view_.fx, view_.cx, view_.width);

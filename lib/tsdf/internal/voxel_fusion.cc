@@ -92,7 +92,9 @@ SPLITFUSION_INLINE void LookUp(const FusionView& view, const SeenSlab& at,
   for (int i = 0; i < kSlab; ++i) seen->pixel[i] = view.pixels[seen->index[i]];
 }
 
-/// Compares voxels with their pixels. Returns 0 if that changes none.
+/// Compares voxels with their pixels: ClassifyDepth() of
+/// lib/geometry/depth_comparison.h as loops that are compiled for vectors.
+/// Returns 0 if that changes none.
 SPLITFUSION_INLINE int Compare(const FusionView& view, const SeenSlab& at,
                                const SlabPixels& seen, SlabUpdate* update) {
   const float truncation = view.truncation;
