@@ -43,8 +43,8 @@ void PipelineOptions::List(OptionList* list) {
   list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
                "of the image", "A surface is modelled once it covers as much.");
   list->Number("max_lost", &max_lost, Range::AtLeast(1), "frames",
-               "A surface in plain view that is lost in so many frames on end "
-               "is modelled anew, under the same id.");
+               "A deforming surface in plain view that is lost in so many "
+               "frames on end is modelled anew, under the same id.");
   list->Part("", &graph);
   list->Part("background_", &background);
   list->Part("object_", &object);

@@ -246,7 +246,9 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     const bool lost = object.state == "lost" && InPlainView(object);
     following.lost_in_view = lost ? following.lost_in_view + 1 : 0;
     if (following.lost_in_view < options_.max_lost) continue;
-    if (!surfaces_.at(object.id)->Reanchor(live_)) continue;
+    Surface& surface = *surfaces_.at(object.id);
+    // Joined models of one node each would share it in Eq. 3.
+    if (surface.graph().rigid() || !surface.Reanchor(live_)) continue;
     object.state = "reanchored";
     following = {};
     predictors_.erase(object.id);
