@@ -35,7 +35,7 @@ void Print(const splitfusion::FrameReport& report) {
   std::printf("frame %2d  %.2f s ", report.frame, report.total_seconds);
   for (const splitfusion::SurfaceReport& surface : report.surfaces) {
     std::printf(" | %s: %s, %d nodes, %.1f mm", surface.label.c_str(),
-                surface.state.c_str(), surface.nodes,
+                ToString(surface.state).c_str(), surface.nodes,
                 1000 * surface.residual_rms);
   }
   std::printf("\n");

@@ -130,7 +130,7 @@ double Reconstruct(const std::string& folder) {
     const splitfusion::Rigid3d truth = WorldFromCamera(frame->index);
     error = (found.translation() - truth.translation()).norm();
     std::printf("frame %2d  %-7s  %.2f s, position off by %.2f mm\n",
-                report.frame, report.surfaces.at(0).state.c_str(),
+                report.frame, ToString(report.surfaces.at(0).state).c_str(),
                 report.total_seconds, 1000 * error);
   }
   fusion.Finish();

@@ -280,7 +280,7 @@ void SequenceRun::WarnOfMissingDepth(const Frame& frame) {
 
 void SequenceRun::WarnOfLostSurfaces(const FrameReport& report) const {
   for (const SurfaceReport& surface : report.surfaces) {
-    if (surface.state != "lost") continue;
+    if (surface.state != TrackState::kLost) continue;
     Warn("frame " + std::to_string(report.frame) + ": surface " +
          std::to_string(surface.id) + " (" + surface.label +
          ") lost: " + surface.reason);

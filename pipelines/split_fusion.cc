@@ -83,7 +83,7 @@ void SplitFusion::Split(const PreparedFrame& prepared, FrameReport* report) {
   live_.labels = split.labels;
   if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
   report->decisions = std::move(split.decisions);
-  FollowInstances(report);
+  FollowTracks();
   report->split_seconds = stopwatch.Restart();
   if (!AllDrawn(surfaces_, rendering_)) {  // A surface was revived.
     rendering_ =
@@ -118,22 +118,34 @@ void SplitFusion::TrackBackground(FrameReport* report) {
 
 void SplitFusion::TrackObjects(FrameReport* report) {
   std::vector<SurfaceReport> objects = LookAtObjects();
+  std::vector<char> found(objects.size(), false);
   tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
-    SurfaceReport& object = objects[i];
-    if (object.state.empty() && !following_[object.id].hidden) {
-      TrackObject(surfaces_.at(object.id).get(), &object);
+    const Surface& surface = *surfaces_.at(objects[i].id);
+    if (!IsInView(objects[i]) || StateOf(surface) == TrackState::kOccluded) {
+      return;
     }
+    found[i] = TrackObject(surfaces_.at(objects[i].id).get(), &objects[i]);
   });
   // One after the other: a surface found elsewhere changes the rendering.
-  for (SurfaceReport& object : objects) {
-    if (object.state.empty() || object.state == "lost") {
-      TrackWhereSeen(surfaces_.at(object.id).get(), &object);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    SurfaceReport& object = objects[i];
+    Track* track = splitter_.mutable_track(object.id);
+    if (!IsInView(object)) {
+      track->Apply(TrackEvent::kLittleInView);
+    } else if (found[i] ||
+               TrackWhereSeen(surfaces_.at(object.id).get(), &object)) {
+      track->Apply(TrackEvent::kFits);
+    } else {
+      // Too little of it may be in view to know where it is.
+      track->Apply(InPlainView(object) ? TrackEvent::kMisfits
+                                       : TrackEvent::kLittleInView);
     }
+    object.state = track->state;
     report->surfaces.push_back(std::move(object));
   }
 }
 
-std::vector<SurfaceReport> SplitFusion::LookAtObjects() {
+std::vector<SurfaceReport> SplitFusion::LookAtObjects() const {
   const std::map<int, int> pixels = PixelsOfSurfaces(live_);
   std::vector<SurfaceReport> objects;
   for (const auto& [id, surface] : surfaces_) {
@@ -142,29 +154,23 @@ std::vector<SurfaceReport> SplitFusion::LookAtObjects() {
     object.id = id;
     const auto seen = pixels.find(id);
     object.pixels = seen == pixels.end() ? 0 : seen->second;
-    if (IsHidden(&object)) {
-      object.state = "hidden";
-    } else if (object.pixels < options_.min_tracked_pixels) {
-      object.state = "unseen";
+    const auto alone = rendering_.alone.find(id);
+    if (alone != rendering_.alone.end()) {
+      object.exposure = Exposure(
+          alone->second, kAloneStride * options_.render_stride, live_, id);
     }
     objects.push_back(std::move(object));
   }
   return objects;
 }
 
-bool SplitFusion::IsHidden(SurfaceReport* report) {
-  const auto alone = rendering_.alone.find(report->id);
-  if (alone == rendering_.alone.end()) return false;
-  const double exposure = Exposure(
-      alone->second, kAloneStride * options_.render_stride, live_, report->id);
-  constexpr double kBack = 1.2;  // More must be seen to come back.
-  bool& hidden = following_[report->id].hidden;
-  if (exposure >= std::min(1.0, (hidden ? kBack : 1) * options_.min_exposure))
-    return false;
-  hidden = true;
-  report->reason = std::to_string(static_cast<int>(100 * exposure)) +
-                   " % of the model in view";
-  return true;
+bool SplitFusion::IsInView(const SurfaceReport& report) const {
+  return report.pixels >= options_.min_tracked_pixels &&
+         report.exposure >= options_.min_exposure;
+}
+
+TrackState SplitFusion::StateOf(const Surface& surface) const {
+  return splitter_.tracks().at(surface.id()).state;
 }
 
 bool SplitFusion::PlaceWhereSeen(Surface* surface, SurfaceReport* report) {
@@ -181,7 +187,7 @@ bool SplitFusion::PlaceWhereSeen(Surface* surface, SurfaceReport* report) {
   return shift.has_value();
 }
 
-void SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
+bool SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
   Stopwatch stopwatch;
   const std::vector<ModelSample> samples =
       VisibleSamples(rendering_, *surface, options_.render_stride);
@@ -190,33 +196,26 @@ void SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
   const Rigid3d still = world_from_camera.inverse() *
                         predictors_.at(surface->id()).velocity().inverse() *
                         world_from_camera;
-  tracker_.Track(samples, live_, static_cast<std::uint16_t>(surface->id()),
-                 still, surface->mutable_graph(), report);
+  return tracker_.Track(samples, live_,
+                        static_cast<std::uint16_t>(surface->id()), still,
+                        surface->mutable_graph(), report);
 }
 
-void SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
+bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
-  Following& following = following_[report->id];
-  if (PlaceWhereSeen(surface, report) || following.hidden) {
-    TrackObject(surface, report);
-    if (report->state == "tracked") {
-      following.hidden = false;
-      return;
-    }
-    *surface->mutable_graph() = before;
-    rendering_ =
-        RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
-  }
-  if (!following.hidden) return;
-  // Too little of it may be in view to know where it is.
-  following.hidden = !InPlainView(*report);
-  report->state = following.hidden ? "hidden" : "lost";
+  const bool was_occluded = StateOf(*surface) == TrackState::kOccluded;
+  if (!PlaceWhereSeen(surface, report) && !was_occluded) return false;
+  if (TrackObject(surface, report)) return true;
+  *surface->mutable_graph() = before;
+  rendering_ =
+      RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
+  return false;
 }
 
 void SplitFusion::Fuse(FrameReport* report) {
   std::vector<SurfaceReport>& reports = report->surfaces;
   tbb::parallel_for(std::size_t{0}, reports.size(), [&](std::size_t i) {
-    if (reports[i].state != "tracked") return;
+    if (reports[i].state != TrackState::kTracked) return;
     Surface& surface = *surfaces_.at(reports[i].id);
     Stopwatch stopwatch;
     surface.Fuse(live_);
@@ -228,56 +227,44 @@ void SplitFusion::Fuse(FrameReport* report) {
 
 bool SplitFusion::InPlainView(const SurfaceReport& report) const {
   constexpr double kUsual = 0.5;
-  const double least =
-      std::max(options_.min_birth_area * camera_.width * camera_.height,
-               kUsual * following_.at(report.id).usual_pixels);
+  const double least = std::max(
+      options_.min_birth_area * camera_.width * camera_.height,
+      kUsual * splitter_.tracks().at(report.id).usual_pixels);
   return report.pixels >= least;
 }
 
 void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
   for (SurfaceReport& object : report->surfaces) {
     if (object.id == 0) continue;
-    Following& following = following_[object.id];
-    if (object.state == "tracked") {
-      const double share = following.usual_pixels > 0 ? 0.1 : 1;
-      following.usual_pixels +=
-          share * (object.pixels - following.usual_pixels);
+    Track& track = *splitter_.mutable_track(object.id);
+    if (track.state == TrackState::kTracked) {
+      const double share = track.usual_pixels > 0 ? 0.1 : 1;
+      track.usual_pixels += share * (object.pixels - track.usual_pixels);
     }
-    const bool lost = object.state == "lost" && InPlainView(object);
-    following.lost_in_view = lost ? following.lost_in_view + 1 : 0;
-    if (following.lost_in_view < options_.max_lost) continue;
     Surface& surface = *surfaces_.at(object.id);
     // Joined models of one node each would share it in Eq. 3.
-    if (surface.graph().rigid() || !surface.Reanchor(live_)) continue;
-    object.state = "reanchored";
-    following = {};
+    if (track.lost_frames < options_.max_lost || surface.graph().rigid() ||
+        !surface.Reanchor(live_)) {
+      continue;
+    }
+    track.Apply(TrackEvent::kFits);
+    object.state = track.state;
+    object.event = "reanchored";
     predictors_.erase(object.id);
   }
 }
 
-SurfaceReport SplitFusion::Remove(int id) {
-  SurfaceReport report;
-  report.id = id;
-  report.label = surfaces_.at(id)->label();
-  report.kind = surfaces_.at(id)->kind();
-  report.state = "merged";
-  surfaces_.erase(id);
-  predictors_.erase(id);
-  following_.erase(id);
-  return report;
-}
-
-void SplitFusion::FollowInstances(FrameReport* report) {
-  for (const auto& [id, instance] : splitter_.instances()) {
+void SplitFusion::FollowTracks() {
+  for (const auto& [id, track] : splitter_.tracks()) {
     const auto found = surfaces_.find(id);
     if (found == surfaces_.end()) continue;
-    const bool held = instance.held_by > 0;
-    // Found where it is seen when released.
-    if (held) following_[id].hidden = true;
-    found->second->set_dormant(instance.dormant || held);
-    found->second->set_label(instance.class_name);
-    if (instance.merged_into == 0) continue;
-    report->surfaces.push_back(Remove(id));
+    if (track.merged_into > 0) {
+      surfaces_.erase(found);
+      predictors_.erase(id);
+      continue;
+    }
+    found->second->set_dormant(!track.followed());
+    found->second->set_label(track.class_name);
   }
 }
 
@@ -289,7 +276,8 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
     surfaces_[id] = std::move(surface);
     SurfaceReport born;
     born.id = id;
-    born.state = "born";
+    born.state = TrackState::kTracked;
+    born.event = "born";
     report->surfaces.push_back(std::move(born));
   };
   if (surfaces_.empty()) {
@@ -303,14 +291,14 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
   const std::map<int, int> pixels = PixelsOfSurfaces(live_);
   const double min_pixels =
       options_.min_birth_area * camera_.width * camera_.height;
-  for (const auto& [id, instance] : splitter_.instances()) {
+  for (const auto& [id, track] : splitter_.tracks()) {
     const auto seen = pixels.find(id);
     if (surfaces_.count(id) != 0 || seen == pixels.end() ||
         seen->second < min_pixels) {
       continue;
     }
-    add(id, instance.class_name,
-        options_.deform_objects ? instance.kind : SurfaceKind::kRigid);
+    add(id, track.class_name,
+        options_.deform_objects ? track.kind : SurfaceKind::kRigid);
   }
 }
 
@@ -324,9 +312,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   }
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
-    const auto found = surfaces_.find(id);
-    if (found == surfaces_.end()) continue;  // Merged.
-    Surface& surface = *found->second;
+    Surface& surface = *surfaces_.at(id);
     const auto seen = pixels.find(id);
     surface_report.pixels = seen == pixels.end() ? 0 : seen->second;
     surface_report.label = surface.label();
@@ -334,17 +320,16 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
     surface_report.nodes = surface.graph().size();
     surface_report.node_spacing = surface.graph().node_spacing;
     surface_report.vertices = static_cast<int>(surface.mesh().vertices.size());
-    const bool tracked = surface_report.state == "tracked";
-    const bool begins =
-        surface_report.state == "born" || surface_report.state == "reanchored";
-    surface.RecordMotions(frame.index, tracked || begins, recent_views_);
+    const bool begins = !surface_report.event.empty();
+    const bool tracked = surface_report.state == TrackState::kTracked;
+    surface.RecordMotions(frame.index, tracked, recent_views_);
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
-    const bool hidden = id != 0 && following_[id].hidden && !surface.dormant();
+    const bool hidden = surface_report.state == TrackState::kOccluded;
     predictors_[id].Record(placed, Center(surface.graph()),
-                           tracked  ? Placement::kTracked
-                           : hidden ? Placement::kHidden
-                                    : Placement::kNotTracked);
+                           tracked && !begins ? Placement::kTracked
+                           : hidden           ? Placement::kHidden
+                                              : Placement::kNotTracked);
     report->render_seconds += surface_report.render_seconds;
     report->associate_seconds += surface_report.associate_seconds;
     report->solve_seconds += surface_report.solve_seconds;

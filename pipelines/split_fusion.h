@@ -63,7 +63,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 3;  // Format.
+  static constexpr std::uint32_t kStateVersion = 4;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -76,43 +76,31 @@ class SplitFusion {
   void Serialize(Archive* archive);
 
  private:
-  /// How a surface has fared.
-  struct Following {
-    bool hidden = false;      ///< Mostly occluded when last looked at.
-    int lost_in_view = 0;     ///< Frames on end: in plain view, not found.
-    double usual_pixels = 0;  ///< Running mean while it is tracked.
-
-    template <typename Archive>
-    void Serialize(Archive* archive) {
-      (*archive)(hidden, lost_in_view, usual_pixels);
-    }
-  };
-
   void PredictMotions();
   void Split(const PreparedFrame& prepared, FrameReport* report);
   void TrackBackground(FrameReport* report);
   /// Every object on its own and at the same time.
   void TrackObjects(FrameReport* report);
-  /// Reports of all objects, so far of those that are not to be tracked:
-  /// hidden or unseen.
-  std::vector<SurfaceReport> LookAtObjects();
-  /// Whether so little of a surface is in view that its motion would be that
-  /// of a strip.
-  bool IsHidden(SurfaceReport* report);
+  /// Reports of all objects: what is in view of each.
+  std::vector<SurfaceReport> LookAtObjects() const;
+  /// Whether so much of a surface is in view that its motion is not that of a
+  /// strip.
+  bool IsInView(const SurfaceReport& report) const;
+  TrackState StateOf(const Surface& surface) const;
   /// Shifts a surface to where its live pixels are; whether such a place is
   /// found.
   bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
-  void TrackObject(Surface* surface, SurfaceReport* report);
-  /// Tracks a surface that is lost or was hidden from where its live pixels
+  /// Whether it fits.
+  bool TrackObject(Surface* surface, SurfaceReport* report);
+  /// Tracks a surface that is lost or was occluded from where its live pixels
   /// are; leaves it where it was if that fails.
-  void TrackWhereSeen(Surface* surface, SurfaceReport* report);
+  bool TrackWhereSeen(Surface* surface, SurfaceReport* report);
   void Fuse(FrameReport* report);
-  void FollowInstances(FrameReport* report);
+  /// Tells surfaces what became of their tracks.
+  void FollowTracks();
   /// Whether the live pixels of a surface show about as much of it as usual.
   bool InPlainView(const SurfaceReport& report) const;
   void ReanchorLostSurfaces(FrameReport* report);
-  /// Of a surface that is a part of another one.
-  SurfaceReport Remove(int id);
   void AddNewSurfaces(const Frame& frame, FrameReport* report);
   void Record(const Frame& frame, FrameReport* report);
   template <typename Archive>
@@ -135,7 +123,6 @@ class SplitFusion {
   ModelMap background_map_;
   /// By surface; of the background in the camera frame, of others in world.
   std::map<int, MotionPredictor> predictors_;
-  std::map<int, Following> following_;  ///< By surface, without the background.
 };
 
 }  // namespace splitfusion

@@ -184,7 +184,7 @@ SurfaceTracker::SurfaceTracker(TrackerOptions options,
   solver_ = solvers.Make(solver.solver, solver);
 }
 
-void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
+bool SurfaceTracker::Track(const std::vector<ModelSample>& samples,
                            const LiveView& live, std::uint16_t surface,
                            const Rigid3d& still, DeformationGraph* graph,
                            SurfaceReport* report) const {
@@ -202,8 +202,9 @@ void SurfaceTracker::Track(const std::vector<ModelSample>& samples,
   }
   const bool tracked =
       TrackFrom(predicted, back, samples, target, graph, report);
-  report->state = tracked ? "tracked" : "lost";
+  report->state = tracked ? TrackState::kTracked : TrackState::kLost;
   if (!tracked) *graph = predicted;
+  return tracked;
 }
 
 double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,

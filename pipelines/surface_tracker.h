@@ -83,9 +83,9 @@ class SurfaceTracker {
   /// of the camera frame that takes the prediction back to where the surface
   /// was: tracking starts there unless the prediction fits clearly better, so
   /// that a motion which the data do not determine does not carry itself on. A
-  /// frame that fails leaves the graph where tracking started; the report's
-  /// state is then "lost" and says why.
-  void Track(const std::vector<ModelSample>& samples, const LiveView& live,
+  /// frame that fails leaves the graph where tracking started; the report says
+  /// why: kLost. Returns whether it succeeded.
+  bool Track(const std::vector<ModelSample>& samples, const LiveView& live,
              std::uint16_t surface, const Rigid3d& still,
              DeformationGraph* graph, SurfaceReport* report) const;
 

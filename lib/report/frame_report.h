@@ -9,6 +9,7 @@
 #include "splitfusion/lib/energy/solver_report.h"
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/split/split_decision.h"
+#include "splitfusion/lib/split/track_state.h"
 
 namespace splitfusion {
 
@@ -26,12 +27,11 @@ struct SurfaceReport {
   int id = 0;                              ///< 0 is the background.
   std::string label;                       ///< Class name.
   SurfaceKind kind = SurfaceKind::kRigid;  ///< How it is tracked.
-  /// "tracked", "born", "lost" (a frame that failed; motion kept, nothing
-  /// fused), "hidden" (mostly behind other surfaces; carried on as predicted,
-  /// nothing fused), "unseen" (not in view), "reanchored" (its model begins
-  /// anew) or "merged" (it turned out to be a part of another surface).
-  std::string state;
-  std::string reason;       ///< Why lost or hidden; empty otherwise.
+  TrackState state = TrackState::kTracked;  ///< After this frame.
+  /// "born", "reanchored" (its model begins anew), or empty.
+  std::string event;
+  std::string reason;       ///< Why tracking failed; empty if it did not.
+  double exposure = 1;      ///< Share of the model that nothing hides.
   int pixels = 0;           ///< Live pixels with depth of this surface.
   int nodes = 0;            ///< Of the deformation graph.
   double node_spacing = 0;  ///< Of the graph, metres; 0 if it is rigid.

@@ -9,17 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool AnyIs(const char* state, const FrameReport& report) {
+bool AnyIs(TrackState state, const FrameReport& report) {
   return std::any_of(report.surfaces.begin(), report.surfaces.end(),
                      [&](const auto& s) { return s.state == state; });
-}
-
-bool IsShown(const std::string& state) {
-  return state == "tracked" || state == "born" || state == "reanchored";
-}
-
-bool IsAway(const std::string& state) {
-  return state == "lost" || state == "hidden" || state == "unseen";
 }
 
 /// "3 frames", "1 frame".
@@ -35,8 +27,8 @@ std::string Trouble(const SurfaceSummary& surface) {
     text += what;
   };
   if (!surface.lost.empty()) add("lost in " + Frames(surface.lost.size()));
-  if (!surface.hidden.empty()) {
-    add("occluded in " + Frames(surface.hidden.size()));
+  if (!surface.occluded.empty()) {
+    add("occluded in " + Frames(surface.occluded.size()));
   }
   if (text.empty()) return text;
   if (surface.away_since >= 0) {
@@ -57,9 +49,9 @@ Json ToJson(const SurfaceSummary& surface) {
           {"node_spacing", surface.node_spacing},
           {"vertices", surface.vertices},
           {"lost", surface.lost},
-          {"hidden", surface.hidden},
+          {"occluded", surface.occluded},
           {"lost_frames", surface.lost.size()},
-          {"occluded_frames", surface.hidden.size()},
+          {"occluded_frames", surface.occluded.size()},
           {"refound_frames", surface.refound.size()},
           {"refound", surface.refound},
           {"reanchored", surface.reanchored},
@@ -114,8 +106,8 @@ Json ToJson(const RunSummary& summary) {
 }
 
 void SummaryBuilder::Add(const FrameReport& report) {
-  if (AnyIs("lost", report)) ++lost_frames_;
-  if (AnyIs("hidden", report)) ++occluded_frames_;
+  if (AnyIs(TrackState::kLost, report)) ++lost_frames_;
+  if (AnyIs(TrackState::kOccluded, report)) ++occluded_frames_;
   seconds_.push_back(report.total_seconds);
   for (std::size_t i = 0; i < kFrameParts.size(); ++i) {
     part_sums_[i] += report.*kFrameParts[i].seconds;
@@ -134,17 +126,19 @@ bool SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   surface.id = report.id;
   surface.label = report.label;
   surface.kind = report.kind;
-  if (IsShown(report.state)) ++surface.frames;
-  if (report.state == "lost") surface.lost.push_back(frame);
-  if (report.state == "hidden") surface.hidden.push_back(frame);
-  const std::string before = last_states_[report.id];
+  const bool shown = report.state == TrackState::kTracked;
+  const bool lost = report.state == TrackState::kLost;
+  const bool occluded = report.state == TrackState::kOccluded;
+  if (shown) ++surface.frames;
+  if (lost) surface.lost.push_back(frame);
+  if (occluded) surface.occluded.push_back(frame);
+  const bool refound =
+      shown && !is_new && last_states_.at(report.id) != TrackState::kTracked;
   last_states_[report.id] = report.state;
-  const bool refound = IsShown(report.state) && IsAway(before);
   if (refound) surface.refound.push_back(frame);
-  const bool gone = report.state == "lost" || report.state == "hidden";
-  if (gone && surface.away_since < 0) surface.away_since = frame;
-  if (IsShown(report.state)) surface.away_since = -1;
-  if (report.state == "reanchored") surface.reanchored.push_back(frame);
+  if ((lost || occluded) && surface.away_since < 0) surface.away_since = frame;
+  if (shown) surface.away_since = -1;
+  if (report.event == "reanchored") surface.reanchored.push_back(frame);
   if (report.nodes > 0) {
     surface.nodes = report.nodes;
     surface.node_spacing = report.node_spacing;

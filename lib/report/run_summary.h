@@ -24,12 +24,12 @@ struct SurfaceSummary {
   double node_spacing = 0;  ///< Of the final graph, metres; 0 if rigid.
   int vertices = 0;         ///< Of the final mesh.
   std::vector<int> lost;    ///< Frames whose solve failed.
-  std::vector<int> hidden;  ///< Frames in which others mostly hid it.
-  /// Frames in which it was tracked again after it had been lost, hidden or out
+  std::vector<int> occluded;  ///< Frames in which others mostly hid it.
+  /// Frames in which it was tracked again after it had been lost, occluded or out
   /// of view.
   std::vector<int> refound;
   std::vector<int> reanchored;  ///< Frames in which its model began anew.
-  /// The frame in which it was lost or hidden and after which it was not
+  /// The frame in which it was lost or occluded and after which it was not
   /// tracked again to the end of the run; -1 = it was.
   int away_since = -1;
 
@@ -37,7 +37,7 @@ struct SurfaceSummary {
   template <typename Archive>
   void Serialize(Archive* archive) {
     (*archive)(id, label, kind, first_frame, frames, nodes, node_spacing,
-               vertices, lost, hidden, refound, reanchored, away_since);
+               vertices, lost, occluded, refound, reanchored, away_since);
   }
 };
 
@@ -52,7 +52,7 @@ struct RunSummary {
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.
   int lost_frames = 0;        ///< Frames in which any surface was lost.
-  int occluded_frames = 0;    ///< Frames in which any surface was hidden.
+  int occluded_frames = 0;    ///< Frames in which any surface was occluded.
   int refound_frames = 0;     ///< Frames in which any surface was found again.
   double median_seconds = 0;  ///< Per frame, without writing.
   double mean_seconds = 0;    ///< Per frame, without writing.
@@ -100,7 +100,7 @@ class SummaryBuilder {
   int lost_frames_ = 0;
   int occluded_frames_ = 0;
   int refound_frames_ = 0;
-  std::map<int, std::string> last_states_;  // By surface.
+  std::map<int, TrackState> last_states_;  // By surface.
   std::vector<double> seconds_;
   std::array<double, kFrameParts.size()> part_sums_{};
   std::map<int, SurfaceSummary> surfaces_;

@@ -3,50 +3,43 @@
 
 #include <vector>
 
-#include "splitfusion/lib/split/instance_matcher.h"
-#include "splitfusion/lib/split/instance_registry.h"
+#include "splitfusion/lib/geometry/point_map.h"
+#include "splitfusion/lib/segmentation/segmenter.h"
+#include "splitfusion/lib/split/assignment.h"
 #include "splitfusion/lib/split/merge_groups.h"
-#include "splitfusion/lib/split/split_work.h"
+#include "splitfusion/lib/split/surface_prior.h"
 
 namespace splitfusion {
 
-// What a person holds is one surface with the person while the two touch
-// (SplitOptions::merge_touching). The splitter follows both all the time, each
-// with its own id; only the labels that it gives out are those of the whole.
-// What holds a part may be held itself: all of them are one whole, the surface
-// at the end of the chain. A surface in several segments is one part.
+/// Detections in which what somebody holds is a part of who holds it.
+struct JoinedDetections {
+  std::vector<InstanceMask> detections;  ///< What is held is in its holder's.
+  std::vector<cv::Mat_<uchar>> held;     ///< Masks that were joined to another.
+};
 
-/// Takes what a surface may hold out of its detections: matches of such
-/// candidates as pieces become newcomers, and the prior inside of their masks
-/// is no longer that of the surface. A candidate that covers most of the
-/// surface is not a part of it but the same under another class, and stays.
+/// Joins what is held, before anything is split: a detection of a class that may
+/// be held, see MergeGroup, and that touches one that may hold it joins that
+/// one's mask; of several the one that it touches along most of its border.
+/// What holds a part may be held itself. Apart, both are what they are.
+JoinedDetections JoinHeldParts(const std::vector<InstanceMask>& detections,
+                               const std::vector<MergeGroup>& groups,
+                               const PointMap& points);
+
+/// Ends the tracks of what is held now: those that a held mask covers become
+/// inactive, and nothing is predicted of them. They may be revived.
+void EndHeldTracks(const std::vector<cv::Mat_<uchar>>& held,
+                   const std::vector<MergeGroup>& groups, TrackTable* tracks,
+                   ComparedDepth* compared);
+
+/// Takes what was put down out of the surfaces whose models still have it: a
+/// candidate that such a surface may hold, but that was not joined to it, is no
+/// piece of it, and inside of its mask the prediction is no longer that of the
+/// surface. One that covers most of the surface is the same thing under another
+/// class.
 void TakeOutParts(const std::vector<MergeGroup>& groups,
                   const std::vector<Candidate>& candidates,
-                  const InstanceRegistry& registry, SplitWork* work,
+                  const TrackTable& tracks, ComparedDepth* compared,
                   std::vector<Match>* matches);
-
-/// Gives held parts their own ids in predicted labels, in which they are one
-/// with the whole: where they were in `last`, the labels of the frame before,
-/// moved with the whole.
-void SplitHeldParts(const InstanceRegistry& registry, const LabelImage& last,
-                    LabelImage* predicted);
-
-/// Surface that the segment of this index, or its surface if it has one,
-/// touches and that may hold it: the one that holds it already, if that still
-/// touches it, else the one that it touches along most of its border; 0 if
-/// none.
-int FindHolder(int index, const std::vector<MergeGroup>& groups,
-               const InstanceRegistry& registry, const SplitWork& work);
-
-/// Joins surfaces to those that hold them, and releases them, or hands them to
-/// another, after several frames without contact. Parts without detection stay
-/// what they are.
-void HoldTouchingParts(const std::vector<MergeGroup>& groups,
-                       InstanceRegistry* registry, SplitWork* work);
-
-/// Labels in which held parts have the id of the whole.
-LabelImage JoinHeldParts(const InstanceRegistry& registry,
-                         const LabelImage& labels);
 
 }  // namespace splitfusion
 

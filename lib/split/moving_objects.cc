@@ -11,9 +11,6 @@ constexpr double kMaxClaimed = 0.5;
 /// Share from which these pixels are not mapped; fewer are noise.
 constexpr double kNoticedShare = 0.2;
 
-constexpr int kMovedFrames = 5;  // So many ...
-constexpr int kWindow = 8;       // ... of the last so many.
-
 /// Part of SplitOptions::max_area up to which a detection may move: half of
 /// the room is not one object.
 constexpr double kMaxAreaPart = 0.5;
@@ -22,41 +19,30 @@ constexpr double kMaxAreaPart = 0.5;
 
 MovingObjects::MovingObjects(const PinholeCamera& camera,
                              const SplitOptions& options)
-    : options_(options), space_(camera), moved_(kWindow) {}
+    : options_(options), space_(camera) {}
 
-bool MovingObjects::IsWatched(const Candidate& candidate,
-                              const LabelTable& table) const {
-  return table.Kind(candidate.class_name) == SurfaceKind::kRigid &&
+bool MovingObjects::IsWatched(const Candidate& candidate) const {
+  return candidate.kind == SurfaceKind::kRigid &&
          candidate.score >= options_.min_score &&
          cv::countNonZero(candidate.mask) <=
              kMaxAreaPart * options_.max_area * candidate.mask.total();
 }
 
 cv::Mat_<uchar> MovingObjects::Watch(const MotionView& view,
-                                     const LabelTable& table,
                                      std::vector<Candidate>* candidates) {
   cv::Mat_<uchar> standing_free(view.depth.size(), uchar(0));
-  if (options_.rigid_objects == "separate" || !view.pose_fits) {
-    return standing_free;
-  }
   for (Candidate& candidate : *candidates) {
-    if (!IsWatched(candidate, table)) continue;
+    if (!IsWatched(candidate)) continue;
     const cv::Mat_<uchar> seen = candidate.mask & (view.depth > 0);
     const cv::Mat_<uchar> own = seen & ~view.claimed;
     const cv::Mat_<uchar> moved =
         space_.WasEmpty(own, view.points, view.world_from_camera);
     const int pixels = cv::countNonZero(own);
-    if (cv::countNonZero(moved) >= kNoticedShare * pixels) {
-      standing_free |= moved;
-    }
-    if (pixels < options_.min_pixels ||
-        pixels < (1 - kMaxClaimed) * cv::countNonZero(seen) ||
-        cv::countNonZero(moved) < kMovedShare * pixels) {
-      continue;
-    }
-    candidate.moved = true;
-    const int hits = moved_.Add(view.frame, candidate.mask);
-    if (hits >= kMovedFrames) candidate.trust = Trust::kFull;
+    const int moved_pixels = cv::countNonZero(moved);
+    if (moved_pixels >= kNoticedShare * pixels) standing_free |= moved;
+    candidate.moved = pixels >= options_.min_pixels &&
+                      pixels >= (1 - kMaxClaimed) * cv::countNonZero(seen) &&
+                      moved_pixels >= kMovedShare * pixels;
   }
   space_.Add(view.frame, view.depth, view.world_from_camera);
   return standing_free;

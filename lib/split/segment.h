@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/split/appearance.h"
 #include "splitfusion/lib/split/split_result.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 #include "splitfusion/lib/split/surface_prior.h"
@@ -14,11 +15,12 @@ namespace splitfusion {
 /// One surface, or one detection that may become one, in one frame.
 struct Segment {
   int surface = 0;             ///< Id; 0 for a newcomer.
+  int tentative = -1;          ///< Its tentative track; -1 for a new one.
+  Appearance appearance;       ///< Of the best detection.
   cv::Mat_<uchar> mask;        ///< Detected, HxW, 255 inside; empty if missed.
   std::string class_name;      ///< Of the best detection.
   double score = 0;            ///< Of the best detection; 0 if missed.
   double iou = 0;              ///< Of the best detection and the projection.
-  bool only_held = false;      ///< Background, unless something holds it.
   SurfaceEvidence evidence;    ///< What the cut is made from.
   cv::Mat_<uchar> foreground;  ///< Cut, size of evidence.crop, 255 inside.
 };

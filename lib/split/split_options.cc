@@ -37,7 +37,6 @@ void SplitOptions::List(OptionList* list) {
                "this share of its border.");
   list->Part("cut_", &graph_cut);
   list->Part("evidence_", &prior);
-  list->Part("uncertain_", &uncertain);
 }
 
 void SplitOptions::Check() const {

@@ -9,7 +9,6 @@
 #include "splitfusion/lib/split/graph_cut.h"
 #include "splitfusion/lib/split/merge_groups.h"
 #include "splitfusion/lib/split/surface_prior.h"
-#include "splitfusion/lib/split/uncertain_region.h"
 
 namespace splitfusion {
 
@@ -17,7 +16,6 @@ namespace splitfusion {
 struct SplitOptions {
   GraphCutOptions graph_cut;     ///< Edges of the cut.
   PriorOptions prior;            ///< Evidence for it.
-  UncertainOptions uncertain;    ///< Background that is left alone.
   double min_score = 0.4;        ///< A detection below counts only if it covers
                                  ///< a known surface well.
   double max_area = 0.75;        ///< Fraction of the image; larger likewise.

@@ -20,11 +20,6 @@ cv::Mat_<uchar> UnexplainedPixels(int surface, const ComparedDepth& compared) {
          ((compared.labels == 0) | (compared.labels == surface));
 }
 
-cv::Mat_<uchar> UnmappedPixels(const ComparedDepth& compared) {
-  const int unknown = static_cast<int>(DepthState::kUnmeasured);
-  return (compared.agreement == unknown) & (compared.background == unknown);
-}
-
 cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
                          const cv::Mat_<uchar>& seeds, const cv::Mat& depth) {
   cv::Mat_<uchar> extent = seeds.clone();
@@ -61,10 +56,12 @@ cv::Mat_<uchar> Protrusions(const LabelImage& labels,
                             const cv::Mat_<uchar>& missed,
                             const ComparedDepth& compared,
                             const cv::Mat& depth) {
+  const int unknown = static_cast<int>(DepthState::kUnmeasured);
   const cv::Mat_<uchar> unexplained = UnexplainedPixels(0, compared);
-  const cv::Mat_<uchar> grown =
-      GrowOver(unexplained, labels > 0, depth) |
-      GrowOver(unexplained | UnmappedPixels(compared), missed, depth);
+  const cv::Mat_<uchar> unmapped =
+      (compared.agreement == unknown) & (compared.background == unknown);
+  const cv::Mat_<uchar> grown = GrowOver(unexplained, labels > 0, depth) |
+                                GrowOver(unexplained | unmapped, missed, depth);
   return grown & (labels == 0);
 }
 

@@ -12,9 +12,6 @@ namespace splitfusion {
 /// predicted. `surface` 0: no surface in particular.
 cv::Mat_<uchar> UnexplainedPixels(int surface, const ComparedDepth& compared);
 
-/// Pixels of which nothing was predicted, HxW 8UC1, 255.
-cv::Mat_<uchar> UnmappedPixels(const ComparedDepth& compared);
-
 /// `seeds` and all pixels of `open` that hang together with them without a jump
 /// in the live depth; HxW 8UC1, 255. A swinging arm is found in this way
 /// although neither a detection nor the prediction covers it. `depth`: HxW
@@ -29,10 +26,10 @@ cv::Mat_<uchar> MissedExtent(int surface, const cv::Mat_<uchar>& others,
                              const ComparedDepth& compared,
                              const cv::Mat& depth);
 
-/// What is one with a surface of `labels` and in front of the background,
-/// though the cut did not give it to the surface; of one in `missed` (255: a
-/// surface without detection) what is unmapped too. HxW 8UC1, 255; `depth` as
-/// in GrowOver().
+/// What hangs together with a surface of `labels`, and may be of it though the
+/// cut did not give it to the surface: in front of the background, and beside
+/// one in `missed` (255: a surface without detection) what is unmapped, too.
+/// HxW 8UC1, 255; `depth` as in GrowOver().
 cv::Mat_<uchar> Protrusions(const LabelImage& labels,
                             const cv::Mat_<uchar>& missed,
                             const ComparedDepth& compared,

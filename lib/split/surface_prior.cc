@@ -48,12 +48,9 @@ class Evidence {
         detected_(!observation.mask.empty()),
         labels_(compared.labels(crop)),
         agreement_(compared.agreement(crop)),
-        background_(compared.background(crop)),
         cut_(cut),
         options_(options) {
-    if (detected_) mask_ = observation.mask(crop);
     if (!observation.others.empty()) others_ = observation.others(crop);
-    if (!observation.support.empty()) support_ = observation.support(crop);
   }
 
   cv::Mat_<float> Compute(const cv::Mat_<uchar>& reference,
@@ -92,11 +89,11 @@ class Evidence {
     const bool own = surface_ > 0 && label == surface_;
     switch (static_cast<DepthState>(agreement_(v, u))) {
       case DepthState::kObserved:
-        if (own) return options_.prediction_weight * OwnShare(v, u);
+        if (own) return options_.prediction_weight;
         return label == 0 ? -options_.background_weight
                           : -options_.prediction_weight;
       case DepthState::kFree:
-        return own ? -MovedAwayWeight(v, u) : 0.0;
+        return own ? -options_.prediction_weight : 0.0;
       case DepthState::kOccluded:
         return own || label == 0 ? options_.unexplained_weight : 0.0;
       default:
@@ -104,32 +101,11 @@ class Evidence {
     }
   }
 
-  /// Behind the projection lies either the background that the surface
-  /// uncovered, or another part of the same surface: in front of the
-  /// background, or inside of the detection.
-  double MovedAwayWeight(int v, int u) const {
-    const auto background = static_cast<DepthState>(background_(v, u));
-    if (background == DepthState::kOccluded) {
-      return -options_.unexplained_weight;
-    }
-    if (!detected_) return 0.5 * options_.prediction_weight;
-    return mask_(v, u) ? 0.0 : options_.prediction_weight;
-  }
-
-  /// The projection counts fully where most detections agreed with it.
-  double OwnShare(int v, int u) const {
-    if (support_.empty()) return 1;
-    return std::clamp(2.0 * support_(v, u) - 0.5, -0.25, 1.0);
-  }
-
   const int surface_;
   const bool detected_;
   const LabelImage labels_;
   const cv::Mat_<uchar> agreement_;
-  const cv::Mat_<uchar> background_;
-  cv::Mat_<uchar> mask_;
   cv::Mat_<uchar> others_;
-  cv::Mat_<float> support_;
   const GraphCutOptions& cut_;
   const PriorOptions& options_;
 };

@@ -47,8 +47,6 @@ struct SurfaceObservation {
   cv::Mat_<uchar> mask;  ///< Detected, 255 inside; empty if missed.
   /// 255 inside the masks of other instances.
   cv::Mat_<uchar> others;
-  /// 0..1: how often recent detections covered the pixel; see MaskSupport.
-  cv::Mat_<float> support;
   /// 255 where a missed surface may have moved to; see MissedExtent.
   cv::Mat_<uchar> extent;
 };

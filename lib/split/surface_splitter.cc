@@ -4,26 +4,24 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <string>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/split/detection_screen.h"
 #include "splitfusion/lib/split/held_parts.h"
-#include "splitfusion/lib/split/hidden_instances.h"
-#include "splitfusion/lib/split/instance_matcher.h"
-#include "splitfusion/lib/split/loose_parts.h"
+#include "splitfusion/lib/split/surface_contact.h"
 #include "splitfusion/lib/split/surface_extent.h"
-#include "splitfusion/lib/split/surface_merging.h"
 
 namespace splitfusion {
 namespace {
 
-/// So early hardly any background is mapped that could speak against a birth.
-constexpr int kEarlyFrames = 10;
-
 /// Share of the background that agrees with the map when the pose is right.
 constexpr double kMinFit = 0.7;
+
+/// So much more evidence a new surface needs where background was mapped, and
+/// one of a rigid class, of which only frames count in which it moved.
+constexpr double kMappedFactor = 2, kRigidFactor = 2.5;
 
 void CheckSize(const std::string& name, const cv::Mat& image,
                const PinholeCamera& camera) {
@@ -34,26 +32,64 @@ void CheckSize(const std::string& name, const cv::Mat& image,
                    std::to_string(camera.height));
 }
 
-/// A surface of fewer pixels with depth is not followed on.
-int MinFollowedPixels(const SplitOptions& options) {
-  return options.min_pixels / 4;
+bool IsTrackable(SurfaceKind kind, const SplitOptions& options) {
+  return options.rigid_objects == "separate" || kind == SurfaceKind::kNonRigid;
 }
 
-int CountWithDepth(const cv::Mat& pixels, const cv::Mat& depth) {
-  return cv::countNonZero(pixels & (depth > 0));
+bool IsTrusted(const InstanceMask& detection, SurfaceKind kind,
+               const SplitOptions& options) {
+  const double area =
+      double(cv::countNonZero(detection.mask)) / detection.mask.total();
+  return detection.score >= options.min_score && area <= options.max_area &&
+         IsTrackable(kind, options);
 }
 
 /// Whether most of what is background by the prior, outside of detections, is
 /// where it was mapped; true if nothing is known of it.
 bool BackgroundFits(const std::vector<Candidate>& candidates,
-                    const SplitWork& work) {
-  cv::Mat_<uchar> open = work.compared.labels == 0;
+                    const ComparedDepth& compared) {
+  cv::Mat_<uchar> open = compared.labels == 0;
   for (const Candidate& candidate : candidates) open.setTo(0, candidate.mask);
-  const cv::Mat_<uchar>& agreement = work.compared.agreement;
+  const cv::Mat_<uchar>& agreement = compared.agreement;
   open.setTo(0, agreement == static_cast<int>(DepthState::kUnmeasured));
   const int same = cv::countNonZero(
       open & (agreement == static_cast<int>(DepthState::kObserved)));
   return same >= kMinFit * cv::countNonZero(open);
+}
+
+Segment MakeSegment(const Candidate& candidate, const Match& match) {
+  Segment segment;
+  segment.surface = match.surface;
+  segment.tentative = match.tentative;
+  segment.mask = candidate.mask.clone();
+  segment.class_name = candidate.class_name;
+  segment.score = candidate.score;
+  segment.iou = match.iou;
+  segment.appearance = candidate.appearance;
+  return segment;
+}
+
+/// Surface that a newcomer is a part of: one of its class that it touches along
+/// a share of `min_contact` of its border; 0 if none.
+int FindBody(int index, const std::vector<Segment>& segments,
+             const LabelImage& segment_labels, const PointMap& points,
+             const TrackTable& tracks, double min_contact) {
+  const cv::Mat_<uchar> pixels = SegmentPixels(index, segment_labels);
+  int body = 0;
+  double best = min_contact;
+  for (int i = 0; i < static_cast<int>(segments.size()); ++i) {
+    const int id = segments[i].surface;
+    if (i == index || id == 0 ||
+        tracks.at(id).class_name != segments[index].class_name) {
+      continue;
+    }
+    const double share =
+        ContactShare(points, pixels, SegmentPixels(i, segment_labels));
+    if (share < best) continue;
+    best = share;
+    body = id;
+  }
+  return body;
 }
 
 }  // namespace
@@ -64,7 +100,6 @@ SurfaceSplitter::SurfaceSplitter(const PinholeCamera& camera, LabelTable table,
       table_(std::move(table)),
       options_(std::move(options)),
       groups_(ParseMergeGroups(options_.merge_touching)),
-      births_(4 * options_.birth_frames),
       objects_(camera, options_) {
   camera_.Check();
   options_.Check();
@@ -75,25 +110,38 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                                    const SurfacePrediction& prediction) {
   CheckSizes(frame, detections, prediction);
   ++frames_;
-  SplitWork work{frame, points, {}, {}, {}, {}, {}, {}, {}};
-  work.prior = CompletePrediction(prediction, last_, registry_.Followed(),
-                                  {camera_.width, camera_.height});
-  SplitHeldParts(registry_, last_.labels, &work.prior.labels);
-  work.compared = CompareDepth(frame.depth, work.prior, options_.prior);
-  CollectSegments(detections, &work);
-  AddMissedSurfaces(&work);
-  CutSegments(&work);
-  work.segment_labels =
-      ComposeSegments(work.segments, work.prior.labels, frame.depth);
-  ClaimLooseParts(registry_, &work);
-  SettleSurfaces(&work);
-  SettleNewcomers(&work);
-  MergeCoveredSurfaces(options_.min_contact, &registry_, &work);
-  HoldTouchingParts(groups_, &registry_, &work);
-  DrawLabels(&work);
-  DrawUncertain(&work);
-  Remember(work);
-  return work.result;
+  SurfacePrediction prior =
+      CompletePrediction(prediction, last_, Followed(tracks_),
+                         {camera_.width, camera_.height});
+  ComparedDepth compared = CompareDepth(frame.depth, prior, options_.prior);
+  SplitResult result;
+  const Input input{frame, points, prior, compared};
+  const JoinedDetections joined = JoinHeldParts(detections, groups_, points);
+  EndHeldTracks(joined.held, groups_, &tracks_, &compared);
+  std::vector<Candidate> candidates = MakeCandidates(joined.detections, input);
+  cv::Mat_<uchar> unconfirmed = WatchObjects(input, &candidates);
+  std::vector<Match> matches = AssignDetections(
+      candidates, {tracks_, tentative_.all(), compared.labels, compared.agreement,
+                   frame.index});
+  RecognizeReturned(frame.index, &compared.labels, &matches, &result.decisions);
+  TakeOutParts(groups_, candidates, tracks_, &compared, &matches);
+  std::vector<Segment> segments = MakeSegments(
+      candidates, matches, frame.index, &unconfirmed, &result.decisions);
+  AddMissedSurfaces(&segments);
+  CutSegments(input, &segments);
+  const LabelImage segment_labels =
+      ComposeSegments(segments, compared.labels, frame.depth);
+  SettleSurfaces(segments, input, &result.decisions);
+  for (int i = 0; i < static_cast<int>(segments.size()); ++i) {
+    if (segments[i].surface > 0) continue;
+    SettleNewcomer(i, input, segment_labels, &segments, &unconfirmed,
+                   &result.decisions);
+  }
+  tentative_.EndFrame(frame.index);
+  result.labels = DrawLabels(segments, segment_labels);
+  result.uncertain = DrawUncertain(segments, result.labels, unconfirmed, input);
+  Remember(segments, result, input);
+  return result;
 }
 
 void SurfaceSplitter::CheckSizes(const Frame& frame,
@@ -112,237 +160,250 @@ void SurfaceSplitter::CheckSizes(const Frame& frame,
   CheckSize("predicted background", prediction.background, camera_);
 }
 
-void SurfaceSplitter::CollectSegments(
-    const std::vector<InstanceMask>& detections, SplitWork* work) {
-  std::vector<Candidate> candidates =
-      ScreenDetections(detections, table_, groups_, options_);
-  const cv::Mat_<uchar> standing_free = WatchObjects(*work, &candidates);
-  MatchOptions match_options;
-  match_options.min_iou = options_.min_match_iou;
-  std::vector<Match> matches =
-      MatchInstances(candidates, work->prior.labels, work->compared.agreement,
-                     registry_.Matchable(), match_options);
-  RecognizeHidden(candidates, table_, registry_, *work, &matches);
-  TakeOutParts(groups_, candidates, registry_, work, &matches);
-  SortedDetections sorted = SortDetections(candidates, matches, table_,
-                                           options_, work->frame.depth.size());
-  work->segments = std::move(sorted.segments);
-  work->unconfirmed = sorted.unconfirmed | standing_free;
-  work->result.decisions = std::move(sorted.decisions);
+std::vector<Candidate> SurfaceSplitter::MakeCandidates(
+    const std::vector<InstanceMask>& detections, const Input& input) const {
+  std::vector<Candidate> candidates;
+  for (const InstanceMask& detection : detections) {
+    const SurfaceKind kind = table_.Kind(detection.class_name);
+    candidates.push_back(
+        {detection.mask, detection.class_name, detection.score, kind,
+         IsTrusted(detection, kind, options_), false,
+         ComputeAppearance(input.frame.color, input.points, detection.mask,
+                           input.prior.world_from_camera)});
+  }
+  return candidates;
 }
 
 cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
-    const SplitWork& work, std::vector<Candidate>* candidates) {
-  cv::Mat_<uchar> claimed(work.frame.depth.size(), uchar(0));
+    const Input& input, std::vector<Candidate>* candidates) {
+  cv::Mat_<uchar> claimed(input.frame.depth.size(), uchar(0));
+  if (options_.rigid_objects == "separate" ||
+      !BackgroundFits(*candidates, input.compared)) {
+    return claimed;
+  }
   for (const Candidate& candidate : *candidates) {
     if (candidate.score >= options_.min_score &&
-        IsTrackable(candidate.class_name, table_, options_)) {
+        candidate.kind == SurfaceKind::kNonRigid) {
       claimed |= candidate.mask;
     }
   }
-  for (const int id : registry_.Followed()) {
-    if (registry_.at(id).kind == SurfaceKind::kRigid) continue;
-    claimed |= work.prior.labels == id;
+  for (const int id : Followed(tracks_)) {
+    if (tracks_.at(id).kind == SurfaceKind::kRigid) continue;
+    claimed |= input.compared.labels == id;
   }
-  return objects_.Watch({work.frame.index, work.frame.depth, work.points,
-                         work.prior.world_from_camera,
-                         BackgroundFits(*candidates, work), claimed},
-                        table_, candidates);
+  return objects_.Watch({input.frame.index, input.frame.depth, input.points,
+                         input.prior.world_from_camera, claimed},
+                        candidates);
 }
 
-void SurfaceSplitter::AddMissedSurfaces(SplitWork* work) const {
-  std::set<int> missed = registry_.Followed();
-  for (const Segment& segment : work->segments) missed.erase(segment.surface);
+void SurfaceSplitter::RecognizeReturned(int frame, LabelImage* predicted,
+                                        std::vector<Match>* matches,
+                                        std::vector<SplitDecision>* decisions) {
+  for (Match& match : *matches) {
+    if (match.surface == 0 || match.piece) continue;
+    Track& track = tracks_.at(match.surface);
+    const int returned =
+        track.followed() ? FindReturned(track, tracks_, frame) : 0;
+    if (returned == 0) continue;
+    track.merged_into = returned;
+    track.Apply(TrackEvent::kMissedLong);
+    SplitDecision decision{"merged", track.id, track.class_name, 0, match.iou};
+    decisions->push_back(decision);
+    predicted->setTo(returned, *predicted == track.id);
+    for (Match& other : *matches) {
+      if (other.surface == track.id) other.surface = returned;
+    }
+  }
+}
+
+std::vector<Segment> SurfaceSplitter::MakeSegments(
+    const std::vector<Candidate>& candidates, const std::vector<Match>& matches,
+    int frame, cv::Mat_<uchar>* unconfirmed,
+    std::vector<SplitDecision>* decisions) {
+  std::vector<Segment> segments;
+  std::map<int, std::size_t> segment_of;  // By surface.
+  const auto add = [&](const Candidate& candidate, const Match& match) {
+    const Segment segment = MakeSegment(candidate, match);
+    const auto known = segment_of.find(match.surface);
+    if (match.surface > 0 && known != segment_of.end()) {
+      segments[known->second].mask |= candidate.mask;
+      decisions->push_back(MakeDecision("merged", segment));
+    } else if (match.surface > 0 || candidate.trusted || candidate.moved) {
+      if (match.surface > 0) segment_of[match.surface] = segments.size();
+      segments.push_back(segment);
+    } else {
+      decisions->push_back(MakeDecision("ignored", segment));
+      if (IsTrackable(candidate.kind, options_)) *unconfirmed |= candidate.mask;
+      if (match.tentative >= 0) {
+        tentative_.Record(match.tentative, frame, candidate.mask,
+                          candidate.appearance, /*counts=*/false);
+      }
+    }
+  };
+  // Pieces last, so that a segment begins with its main detection.
+  for (const bool piece : {false, true}) {
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      if (matches[i].piece == piece) add(candidates[i], matches[i]);
+    }
+  }
+  return segments;
+}
+
+void SurfaceSplitter::AddMissedSurfaces(std::vector<Segment>* segments) const {
+  std::set<int> missed = Followed(tracks_);
+  for (const Segment& segment : *segments) missed.erase(segment.surface);
   for (const int id : missed) {
     Segment segment;
     segment.surface = id;
-    segment.class_name = registry_.at(id).class_name;
-    work->segments.push_back(segment);
+    segment.class_name = tracks_.at(id).class_name;
+    segments->push_back(segment);
   }
 }
 
-void SurfaceSplitter::CutSegments(SplitWork* work) const {
-  std::vector<Segment>& segments = work->segments;
-  tbb::parallel_for(std::size_t{0}, segments.size(), [&](std::size_t i) {
-    Segment& segment = segments[i];
-    segment.evidence =
-        GatherEvidence(Observe(static_cast<int>(i), *work), work->compared,
-                       options_.graph_cut, options_.prior);
+void SurfaceSplitter::CutSegments(const Input& input,
+                                  std::vector<Segment>* segments) const {
+  tbb::parallel_for(std::size_t{0}, segments->size(), [&](std::size_t i) {
+    Segment& segment = (*segments)[i];
+    SurfaceObservation observation{
+        segment.surface,
+        segment.mask,
+        MasksBut(static_cast<int>(i), *segments, input.frame.depth.size()),
+        {}};
+    if (segment.mask.empty()) {
+      observation.extent = MissedExtent(segment.surface, observation.others,
+                                        input.compared, input.frame.depth);
+    }
+    segment.evidence = GatherEvidence(observation, input.compared,
+                                      options_.graph_cut, options_.prior);
     if (segment.evidence.crop.area() == 0) return;
     segment.foreground =
-        CutForeground(work->points, work->frame.color, segment.evidence.crop,
+        CutForeground(input.points, input.frame.color, segment.evidence.crop,
                       segment.evidence.evidence, options_.graph_cut);
   });
 }
 
-SurfaceObservation SurfaceSplitter::Observe(int index,
-                                            const SplitWork& work) const {
-  const Segment& segment = work.segments[index];
-  SurfaceObservation observation{
-      segment.surface,
-      segment.mask,
-      MasksBut(index, work.segments, work.frame.depth.size()),
-      support_.Predict(segment.surface, work.prior.labels),
-      {}};
-  if (segment.mask.empty()) {
-    observation.extent = MissedExtent(segment.surface, observation.others,
-                                      work.compared, work.frame.depth);
-  }
-  return observation;
-}
-
-void SurfaceSplitter::SettleSurfaces(SplitWork* work) {
-  const int count = static_cast<int>(work->segments.size());
-  for (int i = 0; i < count; ++i) {
-    const Segment& segment = work->segments[i];
+void SurfaceSplitter::SettleSurfaces(const std::vector<Segment>& segments,
+                                     const Input& input,
+                                     std::vector<SplitDecision>* decisions) {
+  for (const Segment& segment : segments) {
     if (segment.surface == 0) continue;
-    if (segment.mask.empty()) {
-      const cv::Mat_<uchar> pixels = SegmentPixels(i, work->segment_labels);
-      SettleMissed(segment, CountWithDepth(pixels, work->frame.depth), work);
+    Track& track = tracks_.at(segment.surface);
+    if (!segment.mask.empty()) {
+      decisions->push_back(
+          MakeDecision(track.followed() ? "matched" : "revived", segment));
+      track.Detect(input.frame.index, segment.class_name, segment.score);
       continue;
     }
-    const bool revived = registry_.at(segment.surface).dormant;
-    registry_.RecordDetection(segment.surface, work->frame.index,
-                              segment.class_name, segment.score);
-    work->result.decisions.push_back(
-        MakeDecision(revived ? "revived" : "matched", segment));
-  }
-}
-
-void SurfaceSplitter::SettleMissed(const Segment& segment, int pixels,
-                                   SplitWork* work) {
-  const int missed =
-      work->frame.index - registry_.at(segment.surface).last_detected_frame;
-  const bool gone = missed > options_.max_missed_frames ||
-                    pixels < MinFollowedPixels(options_);
-  if (gone) registry_.SetDormant(segment.surface);
-  work->result.decisions.push_back(
-      MakeDecision(gone ? "dormant" : "missed", segment));
-}
-
-void SurfaceSplitter::SettleNewcomers(SplitWork* work) {
-  // Parts that may be held come last: their holder may be new, too.
-  for (const bool held : {false, true}) {
-    for (std::size_t i = 0; i < work->segments.size(); ++i) {
-      const Segment& segment = work->segments[i];
-      if (segment.surface == 0 &&
-          MayBeHeld(groups_, segment.class_name) == held) {
-        SettleNewcomer(static_cast<int>(i), work);
-      }
+    const int missed = input.frame.index - track.last_detected_frame;
+    if (missed > options_.max_missed_frames) {
+      track.Apply(TrackEvent::kMissedLong);
     }
+    decisions->push_back(
+        MakeDecision(track.followed() ? "missed" : "inactive", segment));
   }
 }
 
-void SurfaceSplitter::SettleNewcomer(int index, SplitWork* work) {
-  Segment& segment = work->segments[index];
-  const cv::Mat_<uchar> pixels = SegmentPixels(index, work->segment_labels);
-  if (const int body =
-          FindBody(index, registry_, options_.min_contact, *work)) {
-    segment.surface = body;
-    work->result.decisions.push_back(MakeDecision("merged", segment));
+void SurfaceSplitter::SettleNewcomer(int index, const Input& input,
+                                     const LabelImage& segment_labels,
+                                     std::vector<Segment>* segments,
+                                     cv::Mat_<uchar>* unconfirmed,
+                                     std::vector<SplitDecision>* decisions) {
+  Segment& segment = (*segments)[index];
+  segment.surface = FindBody(index, *segments, segment_labels, input.points,
+                             tracks_, options_.min_contact);
+  if (segment.surface > 0) {
+    decisions->push_back(MakeDecision("merged", segment));
     return;
   }
-  const bool held = FindHolder(index, groups_, registry_, *work) > 0;
-  const bool large = CountWithDepth(pixels, work->frame.depth) >=
-                     (held ? MinFollowedPixels(options_) : options_.min_pixels);
-  const bool open = large && (held || !segment.only_held);
-  // Who is known, or held by someone, needs no confirmation.
-  const int known = open ? FindKnown(segment, pixels, *work) : 0;
-  if (known > 0 || (open && (held || IsConfirmed(segment, pixels, *work)))) {
-    AddSurface(known, &segment, work);
+  const cv::Mat_<uchar> pixels = SegmentPixels(index, segment_labels);
+  const bool large =
+      cv::countNonZero(pixels & (input.frame.depth > 0)) >= options_.min_pixels;
+  if (!large || !IsConfirmed(segment, pixels, input)) {
+    *unconfirmed |= segment.mask | pixels;
+    decisions->push_back(MakeDecision(large ? "pending" : "ignored", segment));
     return;
   }
-  if (segment.only_held) {
-    segment.mask.setTo(0);  // Background.
-  } else {
-    work->unconfirmed |= segment.mask | pixels;
-  }
-  work->result.decisions.push_back(
-      MakeDecision(open ? "pending" : "ignored", segment));
+  segment.surface = AddTrack(input.frame.index, segment.class_name,
+                             table_.Kind(segment.class_name), &tracks_);
+  tracks_.at(segment.surface)
+      .Detect(input.frame.index, segment.class_name, segment.score);
+  decisions->push_back(MakeDecision("born", segment));
 }
 
 bool SurfaceSplitter::IsConfirmed(const Segment& segment,
                                   const cv::Mat_<uchar>& pixels,
-                                  const SplitWork& work) {
-  const int hits = births_.Add(work.frame.index, segment.mask);
-  if (frames_ == 1 && segment.score >= options_.confident_score) return true;
+                                  const Input& input) {
+  const int index =
+      tentative_.Record(segment.tentative, input.frame.index, segment.mask,
+                        segment.appearance, /*counts=*/true);
   const cv::Mat mapped =
-      pixels & (work.prior.labels == 0) &
-      (work.compared.agreement == static_cast<int>(DepthState::kObserved));
-  const bool was_background =
-      frames_ > kEarlyFrames &&
-      2 * cv::countNonZero(mapped) > cv::countNonZero(pixels);
-  return hits >= options_.birth_frames * (was_background ? 2 : 1);
+      pixels & (input.compared.labels == 0) &
+      (input.compared.agreement == static_cast<int>(DepthState::kObserved));
+  double needed = options_.birth_frames;
+  if (!IsTrackable(table_.Kind(segment.class_name), options_)) {
+    needed *= kRigidFactor;
+  } else if (2 * cv::countNonZero(mapped) > cv::countNonZero(pixels)) {
+    needed *= kMappedFactor;
+  }
+  const bool at_once =
+      frames_ == 1 && segment.score >= options_.confident_score;
+  if (!at_once && tentative_.all()[index].evidence < needed) return false;
+  tentative_.Confirm(index);
+  return true;
 }
 
-int SurfaceSplitter::FindKnown(const Segment& segment,
-                               const cv::Mat_<uchar>& pixels,
-                               const SplitWork& work) const {
-  return registry_.FindAlike(
-      ComputeAppearance(work.frame.color, work.points, pixels),
-      table_.Kind(segment.class_name), registry_.Dormant(), work.frame.index);
-}
-
-void SurfaceSplitter::AddSurface(int known, Segment* segment, SplitWork* work) {
-  births_.Remove(segment->mask);
-  segment->surface =
-      known > 0 ? known
-                : registry_.Create(work->frame.index, segment->class_name,
-                                   table_.Kind(segment->class_name));
-  registry_.RecordDetection(segment->surface, work->frame.index,
-                            segment->class_name, segment->score);
-  work->result.decisions.push_back(
-      MakeDecision(known > 0 ? "revived" : "born", *segment));
-}
-
-void SurfaceSplitter::DrawLabels(SplitWork* work) const {
-  std::vector<std::uint16_t> id_of(work->segments.size() + 1, 0);
-  for (std::size_t i = 0; i < work->segments.size(); ++i) {
-    const int id = work->segments[i].surface;
-    if (id > 0 && !registry_.at(id).dormant) {
+LabelImage SurfaceSplitter::DrawLabels(const std::vector<Segment>& segments,
+                                       const LabelImage& segment_labels) const {
+  std::vector<std::uint16_t> id_of(segments.size() + 1, 0);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const int id = segments[i].surface;
+    if (id > 0 && tracks_.at(id).followed()) {
       id_of[i + 1] = static_cast<std::uint16_t>(id);
     }
   }
-  work->labels.create(work->segment_labels.size());
-  std::transform(work->segment_labels.begin(), work->segment_labels.end(),
-                 work->labels.begin(),
+  LabelImage labels(segment_labels.size());
+  std::transform(segment_labels.begin(), segment_labels.end(), labels.begin(),
                  [&](std::uint16_t segment) { return id_of[segment]; });
-  work->result.labels = JoinHeldParts(registry_, work->labels);
+  return labels;
 }
 
-void SurfaceSplitter::DrawUncertain(SplitWork* work) const {
-  const LabelImage& labels = work->result.labels;
-  UncertainInput input{labels,
-                       work->unconfirmed,
-                       MasksBut(-1, work->segments, labels.size()),
-                       work->prior.labels.clone(),
-                       work->compared.agreement,
-                       work->frame.depth};
+cv::Mat SurfaceSplitter::DrawUncertain(const std::vector<Segment>& segments,
+                                       const LabelImage& labels,
+                                       const cv::Mat_<uchar>& unconfirmed,
+                                       const Input& input) const {
+  const cv::Mat_<uchar>& agreement = input.compared.agreement;
+  cv::Mat_<uchar> expected(labels.size(), uchar(0));
+  for (const int id : Followed(tracks_)) {
+    expected |= input.compared.labels == id;
+  }
   cv::Mat_<uchar> missed(labels.size(), uchar(0));
-  for (const Segment& segment : work->segments) {
+  for (const Segment& segment : segments) {
     if (segment.mask.empty()) missed |= labels == segment.surface;
   }
-  input.unconfirmed |=
-      Protrusions(labels, missed, work->compared, work->frame.depth);
-  for (const auto& [id, instance] : registry_.instances()) {
-    if (!instance.dormant) continue;
-    input.predicted_labels.setTo(0, work->prior.labels == id);
-  }
-  work->result.uncertain = DrawUncertainRegion(input, options_.uncertain);
+  const cv::Mat background_seen =
+      (input.compared.labels == 0) &
+      (agreement == static_cast<int>(DepthState::kObserved));
+  const cv::Mat uncertain =
+      unconfirmed | Protrusions(labels, missed, input.compared, input.frame.depth) |
+      (MasksBut(-1, segments, labels.size()) & ~background_seen) |
+      (expected & (agreement != static_cast<int>(DepthState::kFree)));
+  return uncertain & (labels == 0);
 }
 
-void SurfaceSplitter::Remember(const SplitWork& work) {
-  for (const Segment& segment : work.segments) {
+void SurfaceSplitter::Remember(const std::vector<Segment>& segments,
+                               const SplitResult& result, const Input& input) {
+  for (const Segment& segment : segments) {
     if (segment.surface == 0 || segment.mask.empty()) continue;
-    const cv::Mat_<uchar> pixels = work.labels == segment.surface;
-    registry_.RecordAppearance(
-        segment.surface,
-        ComputeAppearance(work.frame.color, work.points, pixels));
-    support_.Update(segment.surface, pixels, segment.mask, work.prior.labels);
+    AddView(ComputeAppearance(input.frame.color, input.points,
+                              result.labels == segment.surface,
+                              input.prior.world_from_camera),
+            &tracks_.at(segment.surface).appearance);
   }
-  last_ = {
-      work.labels.clone(), work.frame.depth.clone(), {}, Rigid3d::Identity()};
-  last_.depth.setTo(0, work.result.uncertain);
+  last_ = {result.labels.clone(),
+           input.frame.depth.clone(),
+           {},
+           Rigid3d::Identity()};
+  last_.depth.setTo(0, result.uncertain);
 }
 
 }  // namespace splitfusion

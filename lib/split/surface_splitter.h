@@ -1,30 +1,29 @@
 #ifndef SPLITFUSION_LIB_SPLIT_SURFACE_SPLITTER_H_
 #define SPLITFUSION_LIB_SPLIT_SURFACE_SPLITTER_H_
 
-#include <map>
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 #include "splitfusion/lib/geometry/point_map.h"
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
 #include "splitfusion/lib/sequence/frame.h"
-#include "splitfusion/lib/split/birth_queue.h"
-#include "splitfusion/lib/split/instance_registry.h"
-#include "splitfusion/lib/split/mask_support.h"
+#include "splitfusion/lib/split/assignment.h"
 #include "splitfusion/lib/split/moving_objects.h"
 #include "splitfusion/lib/split/segment.h"
 #include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/lib/split/split_result.h"
-#include "splitfusion/lib/split/split_work.h"
 #include "splitfusion/lib/split/surface_prediction.h"
+#include "splitfusion/lib/split/tentative_tracks.h"
+#include "splitfusion/lib/split/track_table.h"
 
 namespace splitfusion {
 
 /// Splits a frame into surfaces that keep their ids over time (SplitFusion
-/// IV-A): matches the detections to the projected surfaces of the frame
-/// before, refines their masks by a 3D graph cut, and carries surfaces through
-/// missed detections with the projected surface as prior.
+/// IV-A): assigns the detections to the tracks, refines their masks by a 3D
+/// graph cut, and carries surfaces through missed detections with the projected
+/// surface as prior.
 class SurfaceSplitter {
  public:
   /// @throw InputError if the camera or an option is out of its range.
@@ -40,51 +39,77 @@ class SurfaceSplitter {
                     const std::vector<InstanceMask>& detections,
                     const SurfacePrediction& prediction);
 
-  /// Every instance ever born, by id.
-  const std::map<int, TrackedInstance>& instances() const {
-    return registry_.instances();
-  }
+  /// Every surface ever born, by id.
+  const TrackTable& tracks() const { return tracks_; }
+  /// One of them, to tell it how tracking went.
+  Track* mutable_track(int id) { return &tracks_.at(id); }
 
   /// Saves or restores all that later frames depend on, see
   /// lib/base/archive.h; of a splitter with the same camera and options.
   template <typename Archive>
   void Serialize(Archive* archive) {
     archive->Section("splitter");
-    (*archive)(registry_, births_, objects_, support_, last_, frames_);
+    (*archive)(tracks_, tentative_, objects_, last_, frames_);
   }
 
  private:
+  /// What is given in one frame; images are HxW.
+  struct Input {
+    const Frame& frame;
+    const PointMap& points;
+    const SurfacePrediction& prior;  // Complete: never empty.
+    const ComparedDepth& compared;   // Live depth with the prior.
+  };
+
   void CheckSizes(const Frame& frame,
                   const std::vector<InstanceMask>& detections,
                   const SurfacePrediction& prediction) const;
-  void CollectSegments(const std::vector<InstanceMask>& detections,
-                       SplitWork* work);
-  cv::Mat_<uchar> WatchObjects(const SplitWork& work,
+  std::vector<Candidate> MakeCandidates(
+      const std::vector<InstanceMask>& detections, const Input& input) const;
+  /// Marks candidates as moved; returns what is no background therefore.
+  cv::Mat_<uchar> WatchObjects(const Input& input,
                                std::vector<Candidate>* candidates);
-  void AddMissedSurfaces(SplitWork* work) const;
-  void CutSegments(SplitWork* work) const;
-  SurfaceObservation Observe(int index, const SplitWork& work) const;
-  void SettleSurfaces(SplitWork* work);
-  void SettleMissed(const Segment& segment, int pixels, SplitWork* work);
-  void SettleNewcomers(SplitWork* work);
-  void SettleNewcomer(int index, SplitWork* work);
+  /// Gives the detections and the predicted pixels of new surfaces that turn out
+  /// to be known ones to these.
+  void RecognizeReturned(int frame, LabelImage* predicted,
+                         std::vector<Match>* matches,
+                         std::vector<SplitDecision>* decisions);
+  /// One segment a detected surface or newcomer; adds what is too weak for
+  /// either to `unconfirmed`.
+  std::vector<Segment> MakeSegments(const std::vector<Candidate>& candidates,
+                                    const std::vector<Match>& matches,
+                                    int frame, cv::Mat_<uchar>* unconfirmed,
+                                    std::vector<SplitDecision>* decisions);
+  void AddMissedSurfaces(std::vector<Segment>* segments) const;
+  void CutSegments(const Input& input, std::vector<Segment>* segments) const;
+  void SettleSurfaces(const std::vector<Segment>& segments, const Input& input,
+                      std::vector<SplitDecision>* decisions);
+  void SettleNewcomer(int index, const Input& input,
+                      const LabelImage& segment_labels,
+                      std::vector<Segment>* segments,
+                      cv::Mat_<uchar>* unconfirmed,
+                      std::vector<SplitDecision>* decisions);
   bool IsConfirmed(const Segment& segment, const cv::Mat_<uchar>& pixels,
-                   const SplitWork& work);
-  int FindKnown(const Segment& segment, const cv::Mat_<uchar>& pixels,
-                const SplitWork& work) const;
-  void AddSurface(int known, Segment* segment, SplitWork* work);
-  void DrawLabels(SplitWork* work) const;
-  void DrawUncertain(SplitWork* work) const;
-  void Remember(const SplitWork& work);
+                   const Input& input);
+  LabelImage DrawLabels(const std::vector<Segment>& segments,
+                        const LabelImage& segment_labels) const;
+  /// What is neither of a surface nor surely background: unconfirmed, one with
+  /// a surface in front of the background, or given to a surface by a mask or
+  /// by the projection though not by the cut.
+  cv::Mat DrawUncertain(const std::vector<Segment>& segments,
+                        const LabelImage& labels,
+                        const cv::Mat_<uchar>& unconfirmed,
+                        const Input& input) const;
+  void Remember(const std::vector<Segment>& segments, const SplitResult& result,
+                const Input& input);
 
   PinholeCamera camera_;
   LabelTable table_;
   SplitOptions options_;
   std::vector<MergeGroup> groups_;
-  InstanceRegistry registry_;
-  BirthQueue births_;
+  TrackTable tracks_;
+  TentativeTracks tentative_;
   MovingObjects objects_;
-  MaskSupport support_;
   SurfacePrediction last_;  // Own labels and live depth of the frame before.
   int frames_ = 0;          // Split so far, the current one included.
 };

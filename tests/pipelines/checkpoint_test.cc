@@ -81,7 +81,10 @@ std::string Step(const Story& story, int frame, SyntheticRun* run,
       run->Next([&](Frame* input, std::vector<InstanceMask>* detections) {
         story.script(frame, input, detections);
       });
-  for (const auto& surface : report.surfaces) events->insert(surface.state);
+  for (const auto& surface : report.surfaces) {
+    events->insert(ToString(surface.state));
+    events->insert(surface.event);
+  }
   for (const auto& split : report.decisions) events->insert(split.action);
   return TextOf(report);
 }
@@ -188,7 +191,7 @@ TEST(Checkpoint, HiddenLostAndDormantSurfacesGoOn) {
   };
   const Record record = RunUndisturbed(story);
   for (const std::string event :
-       {"born", "tracked", "hidden", "lost", "missed", "dormant", "revived"}) {
+       {"born", "tracked", "occluded", "lost", "missed", "inactive", "revived"}) {
     EXPECT_EQ(record.events.count(event), 1u) << event;
   }
   ExpectResumable(story, record, 0, 2);

@@ -54,7 +54,7 @@ TEST(MovingObject, BecomesARigidSurfaceThatIsTrackedWhenItMoves) {
       EXPECT_EQ(run.fusion().surfaces().size(), 1u) << i;
     }
     for (const SurfaceReport& surface : report.surfaces) {
-      tracked += surface.id == 1 && surface.state == "tracked";
+      tracked += surface.id == 1 && ToString(surface.state) == "tracked";
     }
   }
   const Surface* board = FindSurface(run.fusion(), "suitcase");

@@ -91,7 +91,7 @@ TEST(Registries, ASolverOfOnesOwnTracks) {
     return std::make_unique<Descent>(options);
   });
   const Tracked tracked = TrackCorner("projective", "descent", 40, registries);
-  EXPECT_EQ(tracked.report.state, "tracked") << tracked.report.reason;
+  EXPECT_EQ(ToString(tracked.report.state), "tracked") << tracked.report.reason;
   EXPECT_EQ(tracked.report.rounds.back().solver.message, "descent");
   EXPECT_LT(tracked.error, 0.003);
   ExpectInputError([] { TrackCorner("projective", "descent", 1, {}); },
@@ -101,7 +101,7 @@ TEST(Registries, ASolverOfOnesOwnTracks) {
 TEST(Registries, EveryAssociationTracks) {
   for (const std::string& name : BuiltinAssociations().names()) {
     const Tracked tracked = TrackCorner(name, "gn_pcg", 1, {});
-    EXPECT_EQ(tracked.report.state, "tracked") << name;
+    EXPECT_EQ(ToString(tracked.report.state), "tracked") << name;
     EXPECT_LT(tracked.error, 0.001) << name;
   }
   ExpectInputError([] { TrackCorner("optical_flow", "gn_pcg", 1, {}); },
@@ -126,7 +126,7 @@ TEST(Registries, AnAssociationOfOnesOwnHasItsOwnReasons) {
                                      return std::make_unique<Nothing>();
                                    });
   const Tracked tracked = TrackCorner("nothing", "gn_pcg", 1, registries);
-  EXPECT_EQ(tracked.report.state, "lost");
+  EXPECT_EQ(ToString(tracked.report.state), "lost");
   const AssociationCounts& counts = tracked.report.rounds.back().association;
   EXPECT_EQ(Rejected(counts, "not_in_the_mood"), counts.model_points);
 }
@@ -146,7 +146,8 @@ TEST(Registries, ThePipelineTakesThem) {
     frame.depth = CornerDepth(MakeMotion({0, 0, 0}, {0.005 * i, 0, 0}));
     frame.color = PlainColor(Camera(), {90, 90, 90});
     const FrameReport report = fusion.ProcessFrame(frame);
-    EXPECT_EQ(report.surfaces.at(0).state, i == 0 ? "born" : "tracked");
+    EXPECT_EQ(report.surfaces.at(0).event, i == 0 ? "born" : "");
+    EXPECT_EQ(report.surfaces.at(0).state, TrackState::kTracked);
   }
   ExpectInputError(
       [&] { SplitFusion(Camera(), options, LabelTable(), nullptr); },

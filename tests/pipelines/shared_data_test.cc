@@ -61,8 +61,8 @@ Outcome Process(const std::string& sequence) {
   while (const std::optional<Frame> frame = reader.Next()) {
     const FrameReport report = outcome.fusion->ProcessFrame(*frame);
     for (const SurfaceReport& surface : report.surfaces) {
-      outcome.lost += surface.state == "lost";
-      outcome.tracked[surface.id] += surface.state == "tracked";
+      outcome.lost += ToString(surface.state) == "lost";
+      outcome.tracked[surface.id] += ToString(surface.state) == "tracked";
     }
     last_depth = frame->depth;
   }

@@ -30,7 +30,7 @@ struct CornerTracking {
 TEST(SurfaceTracker, FindsTheMotionOfTheCamera) {
   const Rigid3d motion = MakeMotion({0.02, -0.03, 0.01}, {0.03, -0.02, 0.02});
   const CornerTracking tracking(motion);
-  EXPECT_EQ(tracking.report.state, "tracked");
+  EXPECT_EQ(ToString(tracking.report.state), "tracked");
   EXPECT_EQ(tracking.report.reason, "");
   const Rigid3d error = MeanRigidMotion(tracking.graph) * motion.inverse();
   EXPECT_LT(error.translation().norm(), 0.001);
@@ -49,7 +49,7 @@ TEST(SurfaceTracker, ALostFrameKeepsTheMotion) {
   options.max_translation = 0.01;
   const Rigid3d motion = MakeMotion({0, 0, 0}, {0.03, 0, 0.02});
   const CornerTracking moved(motion, options);
-  EXPECT_EQ(moved.report.state, "lost");
+  EXPECT_EQ(ToString(moved.report.state), "lost");
   EXPECT_NE(moved.report.reason.find("m from the prediction"),
             std::string::npos)
       << moved.report.reason;
@@ -58,7 +58,7 @@ TEST(SurfaceTracker, ALostFrameKeepsTheMotion) {
   options = TrackerOptions();
   options.max_rotation = 0.01;
   const CornerTracking turned(MakeMotion({0, 0.03, 0}, {0, 0, 0}), options);
-  EXPECT_EQ(turned.report.state, "lost");
+  EXPECT_EQ(ToString(turned.report.state), "lost");
   EXPECT_NE(turned.report.reason.find("degrees from the prediction"),
             std::string::npos)
       << turned.report.reason;
@@ -71,11 +71,11 @@ TEST(SurfaceTracker, TooFewPointsAreNoTrack) {
   DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   SurfaceReport report;
   MakeTracker().Track(samples, live, 0, Rigid3d::Identity(), &graph, &report);
-  EXPECT_EQ(report.state, "lost");
+  EXPECT_EQ(ToString(report.state), "lost");
   EXPECT_EQ(report.reason.find("only 0 correspondences"), 0u) << report.reason;
   report = SurfaceReport();
   MakeTracker().Track({}, live, 0, Rigid3d::Identity(), &graph, &report);
-  EXPECT_EQ(report.state, "lost");
+  EXPECT_EQ(ToString(report.state), "lost");
   EXPECT_FALSE(report.reason.empty());
 }
 
@@ -91,7 +91,7 @@ TEST(SurfaceTracker, AModelThatHardlyFitsIsNoTrack) {
   SurfaceReport report;
   MakeTracker().Track(samples, View(depth), 0, Rigid3d::Identity(), &graph,
                       &report);
-  EXPECT_EQ(report.state, "lost");
+  EXPECT_EQ(ToString(report.state), "lost");
   EXPECT_NE(report.reason.find("model points fit the depth"), std::string::npos)
       << report.reason;
 }
@@ -107,7 +107,7 @@ TEST(SurfaceTracker, AnObjectThatIsMostlyElsewhereIsNoTrack) {
     MakeTracker().Track(sheet.samples, sheet.live,
                         static_cast<std::uint16_t>(id), Rigid3d::Identity(),
                         &sheet.graph, &report);
-    return report.state + ": " + report.reason;
+    return ToString(report.state) + ": " + report.reason;
   };
   EXPECT_EQ(state(1, 0.7), "tracked: ");
   EXPECT_NE(state(1, 0.4).find("model points in view lie on it"),
@@ -125,7 +125,7 @@ TEST(SurfaceTracker, StartsFromThePredictionIfThatFitsBetter) {
   SurfaceReport report;
   MakeTracker().Track(SamplesOf(View(CornerDepth(Rigid3d::Identity()))), live,
                       0, MakeMotion({0, 0, 0}, {0, 0, -0.24}), &graph, &report);
-  EXPECT_EQ(report.state, "tracked") << report.reason;
+  EXPECT_EQ(ToString(report.state), "tracked") << report.reason;
   EXPECT_LT(
       (MeanRigidMotion(graph).translation() - motion.translation()).norm(),
       0.002);
@@ -139,7 +139,7 @@ TEST(SurfaceTracker, DoesNotFollowAPredictionThatFitsWorse) {
   MakeTracker().Track(SamplesOf(live), live, 0,
                       MakeMotion({0, 0, 0}, {-0.05, 0, -0.25}), &graph,
                       &report);
-  EXPECT_EQ(report.state, "tracked") << report.reason;
+  EXPECT_EQ(ToString(report.state), "tracked") << report.reason;
   EXPECT_LT(MeanRigidMotion(graph).translation().norm(), 0.001);
 }
 
@@ -148,7 +148,7 @@ TEST(SurfaceTracker, BendsANonRigidSurfaceOntoTheDepth) {
   SurfaceReport report;
   MakeTracker().Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(),
                       &sheet.graph, &report);
-  ASSERT_EQ(report.state, "tracked") << report.reason;
+  ASSERT_EQ(ToString(report.state), "tracked") << report.reason;
   const WarpField warp(sheet.graph);
   double error = 0, before = 0;
   for (const ModelSample& s : sheet.samples) {
@@ -192,7 +192,7 @@ double ChangeOfHiddenHalf(bool knows_what_was_seen) {
   }
   for (int frame = 0; frame < 3; ++frame) {
     held.Track(left, sheet.live, 0, Rigid3d::Identity(), &sheet.graph, &report);
-    EXPECT_EQ(report.state, "tracked") << report.reason;
+    EXPECT_EQ(ToString(report.state), "tracked") << report.reason;
   }
   const WarpField now(sheet.graph), before(bent);
   Eigen::Matrix3Xd from(3, right.size()), to(3, right.size());
@@ -221,7 +221,7 @@ TEST(SurfaceTracker, TellsWhichNodesWereSeen) {
   SurfaceReport report;
   MakeTracker(options).Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(),
                              &sheet.graph, &report);
-  ASSERT_EQ(report.state, "tracked") << report.reason;
+  ASSERT_EQ(ToString(report.state), "tracked") << report.reason;
   ASSERT_EQ(static_cast<int>(sheet.graph.seen.size()), sheet.graph.size());
   for (int i = 0; i < sheet.graph.size(); ++i) {
     const double x = sheet.graph.positions[i].x();

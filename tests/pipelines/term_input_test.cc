@@ -64,7 +64,7 @@ TEST(TermInput, ATermMayHoldARigidSurfaceWhereItWas) {
     DeformationGraph graph = MakeRigidGraph(motion);
     SurfaceReport report;
     tracker.Track(samples, live, 0, motion.inverse(), &graph, &report);
-    EXPECT_EQ(report.state, "tracked") << report.reason;
+    EXPECT_EQ(ToString(report.state), "tracked") << report.reason;
     return graph.motions[0].translation.norm();
   };
   EXPECT_NEAR(moved(MakeTracker()), 0.03, 0.001);
@@ -157,7 +157,7 @@ TEST(TermInput, ATermMayHoldTheNodesWhereTheyWere) {
     SurfaceReport report;
     tracker.Track(sheet.samples, sheet.live, 0, motion.inverse(), &sheet.graph,
                   &report);
-    EXPECT_EQ(report.state, "tracked") << report.reason;
+    EXPECT_EQ(ToString(report.state), "tracked") << report.reason;
     double distance = 0;
     for (int i = 0; i < rest.size(); ++i) {
       distance = std::max(distance, (sheet.graph.motions[i].translation -

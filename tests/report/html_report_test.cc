@@ -54,7 +54,7 @@ TEST(HtmlReport, ShowsLostFramesAndLoadsNothing) {
   for (int frame = 0; frame < 3; ++frame) {
     FrameReport report = SampleReport(frame);
     report.surfaces[1].label = "a<b>";
-    if (frame == 1) report.surfaces[1].state = "lost";
+    if (frame == 1) report.surfaces[1].state = TrackState::kLost;
     run.AddFrame(report, {});
   }
   folder.Write("run/pictures/000002_montage.png", "");

@@ -33,14 +33,23 @@ TEST(SummaryBuilder, CountsTimesOverFrames) {
   EXPECT_DOUBLE_EQ(json["seconds_per_frame"]["parts"]["solve"], 0.2);
 }
 
+/// Makes it a state or an event of this name.
+void Be(const std::string& word, SurfaceReport* surface) {
+  for (const TrackState state :
+       {TrackState::kOccluded, TrackState::kLost, TrackState::kInactive}) {
+    if (ToString(state) == word) surface->state = state;
+  }
+  if (word == "born" || word == "reanchored") surface->event = word;
+}
+
 TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
   SummaryBuilder builder;
   for (int frame = 0; frame < 5; ++frame) {
     FrameReport report = SampleReport(frame);
     SurfaceReport& person = report.surfaces[1];
-    if (frame == 1) person.state = "born";
-    if (frame == 3) person.state = "lost";
-    if (frame == 4) person.state = "hidden";
+    if (frame == 1) person.event = "born";
+    if (frame == 3) person.state = TrackState::kLost;
+    if (frame == 4) person.state = TrackState::kOccluded;
     person.vertices = 100 * frame;
     if (frame == 0) report.surfaces.pop_back();
     builder.Add(report);
@@ -54,18 +63,18 @@ TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
   EXPECT_EQ(person.frames, 2);
   EXPECT_EQ(person.vertices, 400);
   EXPECT_EQ(person.lost, std::vector<int>{3});
-  EXPECT_EQ(person.hidden, std::vector<int>{4});
+  EXPECT_EQ(person.occluded, std::vector<int>{4});
 }
 
 TEST(SummaryBuilder, GoesOnFromItsState) {
   const std::vector<std::string> states = {"born",   "tracked", "lost",
-                                           "hidden", "tracked", "hidden"};
+                                           "occluded", "tracked", "occluded"};
   for (std::size_t saved = 0; saved < states.size(); ++saved) {
     SummaryBuilder whole, begun, resumed;
     for (std::size_t frame = 0; frame < states.size(); ++frame) {
       FrameReport report = SampleReport(static_cast<int>(frame));
       report.total_seconds = 0.1 * static_cast<double>(frame);
-      report.surfaces[1].state = states[frame];
+      Be(states[frame], &report.surfaces[1]);
       whole.Add(report);
       (frame <= saved ? begun : resumed).Add(report);
       if (frame != saved) continue;
@@ -86,7 +95,7 @@ RunSummary Through(const std::vector<std::string>& states) {
   for (std::size_t frame = 0; frame < states.size(); ++frame) {
     FrameReport report = SampleReport(static_cast<int>(frame));
     report.surfaces[1].label = "person";
-    report.surfaces[1].state = states[frame];
+    Be(states[frame], &report.surfaces[1]);
     builder.Add(report);
   }
   return builder.Build();
@@ -94,8 +103,8 @@ RunSummary Through(const std::vector<std::string>& states) {
 
 TEST(SummaryBuilder, CountsWhoWasLostOccludedAndFoundAgain) {
   const RunSummary summary =
-      Through({"born", "tracked", "hidden", "hidden", "tracked", "lost",
-               "tracked", "unseen", "tracked"});
+      Through({"born", "tracked", "occluded", "occluded", "tracked", "lost",
+               "tracked", "inactive", "tracked"});
   EXPECT_EQ(summary.lost_frames, 1);
   EXPECT_EQ(summary.occluded_frames, 2);
   EXPECT_EQ(summary.refound_frames, 3);
@@ -114,7 +123,7 @@ TEST(VerdictLine, SaysWhoWasNotFoundAgain) {
   EXPECT_EQ(VerdictLine(Through({"born", "lost", "tracked"})),
             "3 frames, 2 surfaces; 1 person lost in 1 frame, found again");
   RunSummary summary =
-      Through({"born", "tracked", "hidden", "lost", "hidden", "unseen"});
+      Through({"born", "tracked", "occluded", "lost", "occluded", "inactive"});
   EXPECT_EQ(summary.surfaces[1].away_since, 2);
   EXPECT_EQ(VerdictLine(summary),
             "6 frames, 2 surfaces; 1 person lost in 1 frame, occluded in 2 "

@@ -21,7 +21,7 @@ cv::Mat_<uchar> CutByMask(const Frame& frame, const cv::Mat_<uchar>& mask) {
   const ComparedDepth nothing{LabelImage(frame.depth.size(), 0), unknown,
                               unknown};
   const SurfaceEvidence evidence = GatherEvidence(
-      {0, mask, {}, {}, {}}, nothing, options.graph_cut, options.prior);
+      {0, mask, {}, {}}, nothing, options.graph_cut, options.prior);
   cv::Mat_<uchar> result(frame.depth.size(), uchar(0));
   CutForeground(points, frame.color, evidence.crop, evidence.evidence,
                 options.graph_cut)

@@ -63,19 +63,13 @@ TEST_F(HeldPartsTest, WhatTouchesThePersonIsThePersonFromTheFirstFrame) {
   for (int i = 0; i < 5; ++i) {
     Step({});
     ExpectOneSurface("frame " + std::to_string(i));
-    ASSERT_EQ(Count("merged"), 1);
-    const SplitDecision& merged = last_.decisions.back();
-    EXPECT_EQ(merged.surface, 1);
-    EXPECT_EQ(merged.class_name, "teddy bear");
-    EXPECT_EQ(merged.score, 0.8);
   }
-  EXPECT_EQ(splitter_.instances().at(1).class_name, "person");
+  EXPECT_EQ(splitter_.tracks().at(1).class_name, "person");
 }
 
 TEST_F(HeldPartsTest, WhatIsInFrontOfThePersonIsASurfaceOfItsOwn) {
   for (int i = 0; i < 5; ++i) Step({kHeld, 1.6});
   ExpectTwoSurfaces(2);
-  EXPECT_EQ(Count("merged"), 0);
 }
 
 TEST_F(HeldPartsTest, WithoutTheOptionTheyAreTwo) {
@@ -89,32 +83,30 @@ TEST_F(HeldPartsTest, WhatIsTakenUpIsHeldThroughMissedDetections) {
   ExpectTwoSurfaces(2);
   for (int i = 0; i < 3; ++i) Step({});
   ExpectOneSurface("touching");
-  EXPECT_EQ(splitter_.instances().at(2).held_by, 1);
+  EXPECT_FALSE(splitter_.tracks().at(2).followed());
   for (int i = 0; i < 12; ++i) {
     Step({kHeld, kDepth, /*detected=*/false});
     ExpectOneSurface("missed " + std::to_string(i));
   }
   Step({});
   ExpectOneSurface("detected again");
-  EXPECT_EQ(splitter_.instances().size(), 2u);
+  EXPECT_EQ(splitter_.tracks().size(), 2u);
 }
 
-TEST_F(HeldPartsTest, WhatIsPutDownIsOnItsOwnAfterSeveralFrames) {
-  for (int i = 0; i < 4; ++i) Step({});
-  for (int i = 0; i < 4; ++i) {
-    Step({{86 + 4 * i, 45 + 4 * i, 28, 28}});
-    ExpectOneSurface("just let go");
-  }
+TEST_F(HeldPartsTest, WhatIsTakenUpAndPutDownKeepsItsId) {
+  for (int i = 0; i < 3; ++i) Step({{110, 45, 28, 28}});
+  for (int i = 0; i < 6; ++i) Step({});
   for (int i = 0; i < 4; ++i) Step({{100, 60, 28, 28}});
   ExpectTwoSurfaces(2);
-  EXPECT_EQ(Count("merged"), 0);
+  EXPECT_EQ(splitter_.tracks().size(), 2u);
 }
 
-TEST_F(HeldPartsTest, AMomentWithoutContactIsNothing) {
+TEST_F(HeldPartsTest, AMomentWithoutContactMakesNoSurface) {
   for (int i = 0; i < 20; ++i) {
-    Step({i % 4 == 3 ? cv::Rect(86, 45, 28, 28) : kHeld});
-    ExpectOneSurface(std::to_string(i));
+    Step({i % 4 == 3 ? cv::Rect(90, 45, 28, 28) : kHeld});
+    EXPECT_GT(IouOf(1, person_), 0.7) << i;
   }
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
 }
 
 TEST_F(HeldPartsTest, WhatATrackerKnowsAsOneStillComesApart) {
@@ -126,19 +118,6 @@ TEST_F(HeldPartsTest, WhatATrackerKnowsAsOneStillComesApart) {
   // Put down just beside, where the model of the whole still has it.
   for (int i = 0; i < 8; ++i) Step({{86, 45, 28, 28}}, Whole());
   ExpectTwoSurfaces(2);
-  for (int i = 0; i < 3; ++i) Step({{86, 45, 28, 28}, 2, false}, Whole());
-  ExpectTwoSurfaces(2);
-}
-
-TEST_F(HeldPartsTest, WhatWasFoundLateIsTakenOutOfThePerson) {
-  LayeredScene scene;
-  scene.Add(kPerson, kDepth, 1).Add(kHeld, kDepth, 1);
-  for (int i = 0; i < 3; ++i) Split(scene, {{scene.Truth(1), "person", 0.9}});
-  for (int i = 0; i < 3; ++i) {
-    Step({}, Whole());
-    ExpectOneSurface(std::to_string(i));
-  }
-  EXPECT_EQ(splitter_.instances().at(2).held_by, 1);
 }
 
 TEST_F(HeldPartsTest, RigidThingsAreHeldTooAndBackgroundOtherwise) {
@@ -150,7 +129,7 @@ TEST_F(HeldPartsTest, RigidThingsAreHeldTooAndBackgroundOtherwise) {
     EXPECT_GT(IouOf(1, person_), 0.96) << i;
     EXPECT_EQ(Count("ignored"), 1) << i;
   }
-  EXPECT_EQ(splitter_.instances().size(), 1u);
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
   EXPECT_EQ(cv::countNonZero(last_.uncertain & RectMask({108, 50, 15, 20})), 0);
   suitcase.rect = kHeld;
   for (int i = 0; i < 5; ++i) Step(suitcase);
@@ -167,20 +146,53 @@ TEST_F(HeldPartsTest, APersonTakenForAToyIsNoToy) {
     Split(scene, detections);
     EXPECT_GT(IouOf(1, scene.Truth(1)), 0.96) << i;
   }
-  EXPECT_EQ(splitter_.instances().size(), 1u);
-  EXPECT_EQ(splitter_.instances().at(1).class_name, "person");
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
+  EXPECT_EQ(splitter_.tracks().at(1).class_name, "person");
 }
 
-TEST_F(HeldPartsTest, WhoseHolderLeavesIsOnItsOwn) {
-  for (int i = 0; i < 4; ++i) Step({});
-  for (int i = 0; i < 4; ++i) {
-    LayeredScene scene(3.0, i);
-    scene.Add(kHeld, kDepth, 2);
-    toy_ = scene.Truth(2);
-    Split(scene, {{toy_, "teddy bear", 0.8}});
+/// Detections of a person, a bag and a toy side by side, in contact or not.
+class JoinHeldPartsTest : public testing::Test {
+ protected:
+  JoinedDetections Join(const std::string& groups, int bag_x, int toy_x) {
+    LayeredScene scene;
+    scene.Add({20, 20, 40, 80}, 2, 1);
+    scene.Add({bag_x, 40, 30, 30}, 2, 2);
+    scene.Add({toy_x, 45, 20, 20}, 2, 3);
+    const Frame frame = scene.MakeFrame(0);
+    for (const int id : {1, 2, 3}) masks_[id] = scene.Truth(id);
+    return JoinHeldParts({{masks_[1], "person", 0.9},
+                          {masks_[2], "handbag", 0.8},
+                          {masks_[3], "toy", 0.7}},
+                         ParseMergeGroups(groups),
+                         ComputePointMap(frame.depth, SceneCamera()));
   }
-  EXPECT_TRUE(splitter_.instances().at(1).dormant);
-  EXPECT_GT(IouOf(2, toy_), 0.96);
+  std::map<int, cv::Mat_<uchar>> masks_;
+};
+
+TEST_F(JoinHeldPartsTest, WhatIsOnWhatIsHeldBelongsToTheWhole) {
+  const JoinedDetections joined =
+      Join("person+handbag,handbag+toy", /*bag_x=*/60, /*toy_x=*/90);
+  ASSERT_EQ(joined.detections.size(), 1u);
+  EXPECT_EQ(joined.detections[0].class_name, "person");
+  const cv::Mat all = masks_[1] | masks_[2] | masks_[3];
+  EXPECT_EQ(cv::countNonZero(joined.detections[0].mask != all), 0);
+  EXPECT_EQ(joined.held.size(), 2u);
+}
+
+TEST_F(JoinHeldPartsTest, AChainIsNoGroupOfItsEnds) {
+  EXPECT_EQ(Join("person+handbag", 60, 90).detections.size(), 2u);
+  EXPECT_EQ(Join("person+handbag,handbag+toy", 120, 60).detections.size(), 3u);
+}
+
+TEST_F(JoinHeldPartsTest, WhatIsApartStaysApart) {
+  EXPECT_EQ(Join("person+handbag,handbag+toy", 70, 110).detections.size(), 3u);
+}
+
+TEST_F(JoinHeldPartsTest, TwoThatMayHoldEachOtherAreOne) {
+  const JoinedDetections joined =
+      Join("person+handbag,handbag+person", 60, 120);
+  EXPECT_EQ(joined.detections.size(), 2u);
+  EXPECT_EQ(joined.held.size(), 1u);
 }
 
 TEST(MergeGroups, AreReadFromText) {

@@ -1,62 +1,118 @@
 #include <gtest/gtest.h>
 
 #include "split/layered_scene.h"
-#include "splitfusion/lib/split/birth_queue.h"
-#include "splitfusion/lib/split/instance_registry.h"
-#include "splitfusion/lib/split/mask_support.h"
+#include "splitfusion/lib/split/appearance.h"
 #include "splitfusion/lib/split/surface_contact.h"
+#include "splitfusion/lib/split/tentative_tracks.h"
+#include "splitfusion/lib/split/track_table.h"
 
 namespace splitfusion {
 namespace {
 
-TEST(BirthQueue, CountsDetectionsAtOnePlace) {
-  BirthQueue queue(/*window=*/4);
-  const cv::Mat_<uchar> here = RectMask({10, 10, 30, 30});
-  const cv::Mat_<uchar> there = RectMask({100, 10, 30, 30});
-  EXPECT_EQ(queue.Add(0, here), 1);
-  EXPECT_EQ(queue.Add(1, there), 1);
-  EXPECT_EQ(queue.Add(2, Moved(here, 5, 0)), 2);
-  EXPECT_EQ(queue.Add(2, Moved(here, 6, 0)), 2);  // The same frame.
-  EXPECT_EQ(queue.Add(3, Moved(here, 10, 0)), 3);
-}
-
-TEST(BirthQueue, ForgetsAfterTheWindowAndAfterBirth) {
-  BirthQueue queue(/*window=*/4);
-  const cv::Mat_<uchar> here = RectMask({10, 10, 30, 30});
-  queue.Add(0, here);
-  EXPECT_EQ(queue.Add(3, here), 2);
-  EXPECT_EQ(queue.Add(4, here), 2);
-  EXPECT_EQ(queue.Add(9, here), 1);
-  queue.Remove(here);
-  EXPECT_EQ(queue.Add(10, here), 1);
-}
-
-TEST(MaskSupport, RisesWhereDetectionsCoverASurface) {
-  MaskSupport support;
-  const cv::Mat_<uchar> body = RectMask({40, 30, 60, 60});
-  const cv::Mat_<uchar> mask = RectMask({40, 30, 30, 60});
-  LabelImage labels(120, 160, std::uint16_t(0));
-  labels.setTo(1, body);
-  EXPECT_FLOAT_EQ(support.Predict(1, labels)(50, 50), 0.5f);
-  for (int i = 0; i < 8; ++i) support.Update(1, body, mask, labels);
-  const cv::Mat_<float> after = support.Predict(1, labels);
-  EXPECT_GT(after(60, 50), 0.9f);
-  EXPECT_LT(after(60, 90), 0.1f);
-}
-
-TEST(MaskSupport, MovesWithTheSurface) {
-  MaskSupport support;
-  const cv::Mat_<uchar> body = RectMask({20, 30, 60, 60});
-  LabelImage labels(120, 160, std::uint16_t(0));
-  labels.setTo(1, body);
-  for (int i = 0; i < 8; ++i) {
-    support.Update(1, body, RectMask({20, 30, 30, 60}), labels);
+TEST(TrackState, FollowsItsEvents) {
+  using S = TrackState;
+  using E = TrackEvent;
+  EXPECT_EQ(Next(S::kTentative, E::kConfirmed), S::kTracked);
+  EXPECT_EQ(Next(S::kTentative, E::kFits), S::kTentative);
+  for (const S state : {S::kTracked, S::kOccluded, S::kLost}) {
+    EXPECT_EQ(Next(state, E::kFits), S::kTracked);
+    EXPECT_EQ(Next(state, E::kMisfits), S::kLost);
+    EXPECT_EQ(Next(state, E::kLittleInView), S::kOccluded);
+    EXPECT_EQ(Next(state, E::kMissedLong), S::kInactive);
+    EXPECT_EQ(Next(state, E::kDetected), state);
   }
-  LabelImage moved(120, 160, std::uint16_t(0));
-  moved.setTo(1, Moved(body, 40, 0));
-  const cv::Mat_<float> after = support.Predict(1, moved);
-  EXPECT_GT(after(60, 70), 0.9f);
-  EXPECT_LT(after(60, 110), 0.1f);
+  // Who comes back is looked for before he is believed to be tracked.
+  EXPECT_EQ(Next(S::kInactive, E::kDetected), S::kOccluded);
+  EXPECT_EQ(Next(S::kInactive, E::kFits), S::kInactive);
+}
+
+TEST(Track, CountsTheFramesInWhichItIsLostOnEnd) {
+  Track track;
+  track.Apply(TrackEvent::kConfirmed);
+  track.Apply(TrackEvent::kMisfits);
+  track.Apply(TrackEvent::kDetected);
+  track.Apply(TrackEvent::kMisfits);
+  EXPECT_EQ(track.lost_frames, 2);
+  track.Apply(TrackEvent::kLittleInView);
+  EXPECT_EQ(track.lost_frames, 0);
+}
+
+TEST(Track, TakesTheClassOfTheMajority) {
+  Track track;
+  track.Detect(0, "dog", 0.9);
+  track.Detect(1, "person", 0.6);
+  EXPECT_EQ(track.class_name, "dog");
+  track.Detect(2, "person", 0.6);
+  EXPECT_EQ(track.class_name, "person");
+  EXPECT_EQ(track.last_detected_frame, 2);
+}
+
+TEST(TrackTable, GivesIdsInOrderOfBirth) {
+  TrackTable tracks;
+  EXPECT_EQ(AddTrack(0, "dog", SurfaceKind::kNonRigid, &tracks), 1);
+  EXPECT_EQ(AddTrack(3, "chair", SurfaceKind::kRigid, &tracks), 2);
+  EXPECT_EQ(tracks.at(2).first_frame, 3);
+  EXPECT_EQ(tracks.at(2).state, TrackState::kTracked);
+  tracks.at(1).Apply(TrackEvent::kMissedLong);
+  EXPECT_EQ(Followed(tracks), std::set<int>{2});
+}
+
+class TentativeTracksTest : public testing::Test {
+ protected:
+  /// Evidence after a frame in which it was detected or not.
+  double Step(bool detected, bool counts = true) {
+    if (detected) {
+      index_ = tracks_.Record(tracks_.all().empty() ? -1 : 0, frame_, mask_, {},
+                              counts);
+    }
+    tracks_.EndFrame(frame_++);
+    return tracks_.all().empty() ? 0 : tracks_.all()[0].evidence;
+  }
+  const cv::Mat_<uchar> mask_ = RectMask({10, 10, 30, 30});
+  TentativeTracks tracks_;
+  int frame_ = 0;
+  int index_ = -1;
+};
+
+TEST_F(TentativeTracksTest, EvidenceGrowsWithDetectionsAndFades) {
+  EXPECT_EQ(Step(true), 1);
+  EXPECT_EQ(Step(true), 2);
+  EXPECT_EQ(Step(false), 1.5);
+  EXPECT_EQ(Step(true, /*counts=*/false), 1);
+  EXPECT_EQ(Step(false), 0.5);
+  EXPECT_EQ(Step(false), 0);
+  EXPECT_TRUE(tracks_.all().empty());
+}
+
+TEST_F(TentativeTracksTest, WhatDoesNotCountIsForgottenAtOnce) {
+  EXPECT_EQ(Step(true, /*counts=*/false), 0);
+  EXPECT_TRUE(tracks_.all().empty());
+}
+
+TEST_F(TentativeTracksTest, WhatIsConfirmedIsGoneAtTheEndOfTheFrame) {
+  Step(true);
+  const int index = tracks_.Record(0, frame_, mask_, {}, true);
+  tracks_.Confirm(index);
+  tracks_.EndFrame(frame_);
+  EXPECT_TRUE(tracks_.all().empty());
+}
+
+TEST(Appearance, IsTheMeanOfAllPixelsAtTheLastPlace) {
+  const Frame frame = LayeredScene().Add({20, 30, 30, 60}, 2.0, 1).MakeFrame(0);
+  const PointMap points = ComputePointMap(frame.depth, SceneCamera());
+  Rigid3d pose = Rigid3d::Identity();
+  pose.translation().x() = 1;
+  const cv::Rect body(20, 30, 30, 60);
+  Appearance appearance =
+      ComputeAppearance(frame.color, points, RectMask(body), pose);
+  EXPECT_NEAR(appearance.center.z(), 2, 0.01);
+  EXPECT_NEAR(appearance.center.x(), 1 + (35.0 - 80) / 140 * 2, 0.02);
+  const Appearance strip = ComputeAppearance(
+      frame.color, points, RectMask({100, 30, 3, 60}), pose);  // Of the wall.
+  EXPECT_EQ(ColorSimilarity(appearance, strip), 0);
+  AddView(strip, &appearance);
+  EXPECT_NEAR(ColorSimilarity(appearance, strip), 1.0 / 11, 1e-6);
+  EXPECT_EQ(appearance.center, strip.center);
 }
 
 class ContactTest : public testing::Test {
@@ -79,56 +135,6 @@ TEST_F(ContactTest, IsTheSharedSideOfOneSurface) {
 TEST_F(ContactTest, IsZeroAcrossADepthGap) {
   EXPECT_EQ(Share(2.0, 2.4), 0.0);
   EXPECT_EQ(Share(2.4, 2.0), 0.0);
-}
-
-TEST(InstanceRegistry, TakesTheClassOfTheMajority) {
-  InstanceRegistry registry;
-  const int id = registry.Create(0, "dog", SurfaceKind::kNonRigid);
-  registry.RecordDetection(id, 0, "dog", 0.9);
-  registry.RecordDetection(id, 1, "person", 0.6);
-  EXPECT_EQ(registry.at(id).class_name, "dog");
-  registry.RecordDetection(id, 2, "person", 0.6);
-  EXPECT_EQ(registry.at(id).class_name, "person");
-  EXPECT_EQ(registry.at(id).last_detected_frame, 2);
-}
-
-TEST(InstanceRegistry, NeverUsesAnIdTwice) {
-  InstanceRegistry registry;
-  EXPECT_EQ(registry.Create(0, "dog", SurfaceKind::kNonRigid), 1);
-  EXPECT_EQ(registry.Create(0, "dog", SurfaceKind::kNonRigid), 2);
-  registry.Merge(2, 1);
-  EXPECT_EQ(registry.Matchable(), std::set<int>{1});
-  EXPECT_EQ(registry.Create(5, "dog", SurfaceKind::kNonRigid), 3);
-  registry.SetDormant(1);
-  EXPECT_EQ(registry.Matchable(), (std::set<int>{1, 3}));
-  EXPECT_EQ(registry.Followed(), std::set<int>{3});
-}
-
-TEST(InstanceRegistry, RecognisesWhoComesBack) {
-  LayeredScene scene;
-  scene.Add({20, 30, 30, 60}, 2.0, 1).Add({100, 30, 30, 60}, 2.0, 2);
-  const Frame frame = scene.MakeFrame(0);
-  const PointMap points = ComputePointMap(frame.depth, SceneCamera());
-  const auto looks = [&](int card) {
-    return ComputeAppearance(frame.color, points, scene.Truth(card));
-  };
-  InstanceRegistry registry;
-  const int id = registry.Create(0, "person", SurfaceKind::kNonRigid);
-  registry.RecordAppearance(id, looks(1));
-  const auto alike = [&](const Appearance& appearance, SurfaceKind kind) {
-    return registry.FindAlike(appearance, kind, registry.Dormant(), 1);
-  };
-  EXPECT_EQ(alike(looks(1), SurfaceKind::kNonRigid), 0);
-  registry.SetDormant(id);
-  EXPECT_EQ(alike(looks(1), SurfaceKind::kNonRigid), id);
-  EXPECT_EQ(alike(looks(2), SurfaceKind::kNonRigid), 0);
-  EXPECT_EQ(alike(looks(1), SurfaceKind::kRigid), 0);
-  Appearance far_away = looks(1);
-  far_away.center[2] += 1.5f;
-  EXPECT_EQ(alike(far_away, SurfaceKind::kNonRigid), 0);
-  EXPECT_EQ(registry.FindAlike(far_away, SurfaceKind::kNonRigid, {id}, 30), id)
-      << "after a second one may be there";
-  EXPECT_EQ(registry.FindAlike(looks(1), SurfaceKind::kNonRigid, {}, 1), 0);
 }
 
 }  // namespace

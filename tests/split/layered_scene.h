@@ -21,7 +21,6 @@ inline SplitOptions SceneOptions() {
   SplitOptions options;
   options.graph_cut.core_erosion = 3;
   options.graph_cut.outer_dilation = 6;
-  options.uncertain = {3, 5, 15};
   options.min_pixels = 150;
   return options;
 }

@@ -33,7 +33,7 @@ class LongIdentityTest : public SplitterTest {
   void ExpectBothFollowed() const {
     ExpectSeen(1);
     ExpectSeen(2);
-    EXPECT_EQ(splitter_.instances().size(), 2u);
+    EXPECT_EQ(splitter_.tracks().size(), 2u);
     EXPECT_EQ(cv::countNonZero(last_.labels > 2), 0);
   }
   cv::Mat_<uchar> truth_[2];
@@ -54,7 +54,7 @@ TEST_F(LongIdentityTest, WhoIsBehindAnotherFor30FramesComesOutAsHimself) {
     ExpectSeen(1);
     if (i >= 14) ExpectBothFollowed();
   }
-  EXPECT_FALSE(splitter_.instances().at(2).dormant);
+  EXPECT_TRUE(splitter_.tracks().at(2).followed());
 }
 
 TEST_F(LongIdentityTest, WhoTurnsBackBehindAnotherIsHimselfToo) {
@@ -76,8 +76,8 @@ TEST_F(LongIdentityTest, BothLeaveAndComeBackAfterALongTime) {
   for (int i = 0; i < 10; ++i) Step(20, 110);
   for (int i = 0; i < 14; ++i) Step(20 - 6 * i, 110 + 6 * i);
   for (int i = 0; i < 60; ++i) Step(-60, 170);
-  EXPECT_TRUE(splitter_.instances().at(1).dormant);
-  EXPECT_TRUE(splitter_.instances().at(2).dormant);
+  EXPECT_FALSE(splitter_.tracks().at(1).followed());
+  EXPECT_FALSE(splitter_.tracks().at(2).followed());
   for (int i = 0; i < 14; ++i) Step(-64 + 6 * i, 194 - 6 * i);
   for (int i = 0; i < 5; ++i) Step(20, 110);
   ExpectBothFollowed();
@@ -90,7 +90,7 @@ TEST_F(LongIdentityTest, FifteenFramesWithoutAnyDetectionAreBridged) {
     Step(x, 120, /*found=*/i < 5 || i % 16 == 0);
     ExpectBothFollowed();
   }
-  EXPECT_FALSE(splitter_.instances().at(1).dormant);
+  EXPECT_TRUE(splitter_.tracks().at(1).followed());
 }
 
 TEST_F(LongIdentityTest, TheClassFlickersTheSurfacesDoNot) {
@@ -107,9 +107,9 @@ TEST_F(LongIdentityTest, TheClassFlickersTheSurfacesDoNot) {
     Split(scene, detections);
     EXPECT_GT(IouOf(1, scene.Truth(1)), 0.95) << i;
     EXPECT_GT(IouOf(2, scene.Truth(2)), 0.95) << i;
-    EXPECT_EQ(splitter_.instances().size(), 2u);
+    EXPECT_EQ(splitter_.tracks().size(), 2u);
   }
-  EXPECT_EQ(splitter_.instances().at(1).class_name, "person");
+  EXPECT_EQ(splitter_.tracks().at(1).class_name, "person");
 }
 
 TEST_F(LongIdentityTest, SpuriousDetectionsLeaveNoSurface) {
@@ -127,7 +127,7 @@ TEST_F(LongIdentityTest, SpuriousDetectionsLeaveNoSurface) {
     Split(scene, detections);
     EXPECT_GT(IouOf(1, scene.Truth(1)), 0.9) << i;
   }
-  EXPECT_EQ(splitter_.instances().size(), 1u);
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ class MovingObjectsTest : public SplitterTest {
     SurfacePrediction prediction{LabelImage(120, 160, std::uint16_t(0)),
                                  mapped.depth().clone(),
                                  mapped.depth().clone()};
-    if (!splitter_.instances().empty()) {
+    if (!splitter_.tracks().empty()) {
       prediction.labels.setTo(1, scene.Truth(1));
       prediction.depth.setTo(2.0, scene.Truth(1));
     }
@@ -48,18 +48,18 @@ TEST_F(MovingObjectsTest, AChairBecomesASurfaceWhenItMovesAndStaysOne) {
   EXPECT_EQ(cv::countNonZero(last_.labels), 0);
   int x = 20;
   int waited = 0;
-  while (splitter_.instances().empty() && waited < 40) Step(x += 2), ++waited;
+  while (splitter_.tracks().empty() && waited < 40) Step(x += 2), ++waited;
   EXPECT_EQ(Count("born"), 1);
   EXPECT_GE(waited, 8);  // It must have moved by more than its wobble.
   EXPECT_LE(waited, 20);
-  EXPECT_EQ(splitter_.instances().at(1).kind, SurfaceKind::kRigid);
-  EXPECT_EQ(splitter_.instances().at(1).class_name, "chair");
+  EXPECT_EQ(splitter_.tracks().at(1).kind, SurfaceKind::kRigid);
+  EXPECT_EQ(splitter_.tracks().at(1).class_name, "chair");
   for (int i = 0; i < 40; ++i) {  // It stands, then goes back.
     Step(i < 25 ? x : x -= 2);
     EXPECT_EQ(Count("matched"), 1) << i;
     EXPECT_GT(IouOf(1, truth_), 0.95) << i;
   }
-  EXPECT_EQ(splitter_.instances().size(), 1u);
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
 }
 
 TEST_F(MovingObjectsTest, WhatHasMovedIsNotMappedWhileItWaits) {
@@ -85,7 +85,7 @@ TEST_F(MovingObjectsTest, AStandingChairUnderNoisyMasksStaysBackground) {
     Split(scene, {{mask, "chair", 0.9}});
     EXPECT_EQ(cv::countNonZero(last_.labels), 0) << i;
   }
-  EXPECT_TRUE(splitter_.instances().empty());
+  EXPECT_TRUE(splitter_.tracks().empty());
 }
 
 TEST_F(MovingObjectsTest, AChairBehindAPassingPersonStaysBackground) {
@@ -99,8 +99,8 @@ TEST_F(MovingObjectsTest, AChairBehindAPassingPersonStaysBackground) {
     Split(scene, detections);
     EXPECT_EQ(Count("ignored"), 1) << i;  // The chair.
   }
-  EXPECT_EQ(splitter_.instances().size(), 1u);
-  EXPECT_EQ(splitter_.instances().at(1).class_name, "person");
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
+  EXPECT_EQ(splitter_.tracks().at(1).class_name, "person");
 }
 
 TEST_F(MovingObjectsTest, WhatComesIntoViewBeforeAMappedWallHasNotMoved) {
@@ -114,7 +114,7 @@ TEST_F(MovingObjectsTest, WhatComesIntoViewBeforeAMappedWallHasNotMoved) {
     Split(scene, {{scene.Truth(1), "chair", 0.9}}, prediction);
     EXPECT_EQ(cv::countNonZero(last_.labels), 0) << i;
   }
-  EXPECT_TRUE(splitter_.instances().empty());
+  EXPECT_TRUE(splitter_.tracks().empty());
 }
 
 TEST_F(MovingObjectsTest, AWrongPoseMovesNothing) {
@@ -126,7 +126,7 @@ TEST_F(MovingObjectsTest, AWrongPoseMovesNothing) {
     prediction.background.setTo(2.0, RectMask(ChairAt(60)));
     Split(scene, {{scene.Truth(1), "chair", 0.9}}, prediction);
   }
-  EXPECT_TRUE(splitter_.instances().empty());
+  EXPECT_TRUE(splitter_.tracks().empty());
 }
 
 TEST_F(MovingObjectsTest, HalfOfTheRoomIsNotAnObject) {
@@ -138,7 +138,7 @@ TEST_F(MovingObjectsTest, HalfOfTheRoomIsNotAnObject) {
     if (i >= 15) detections.push_back({scene.Truth(1), "bed", 0.9});
     Split(scene, detections, WallAlone());
   }
-  EXPECT_TRUE(splitter_.instances().empty());
+  EXPECT_TRUE(splitter_.tracks().empty());
 }
 
 class SeenSpaceTest : public testing::Test {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "split/layered_scene.h"
-#include "splitfusion/lib/split/uncertain_region.h"
 #include "support/expect_input_error.h"
 
 namespace splitfusion {
@@ -82,63 +81,6 @@ TEST(ComposeSegments, WithoutDetectionTheProjectionFillsHoles) {
   LabelImage predicted = kNothing.clone();
   predicted(segment.evidence.crop) = 3;
   EXPECT_EQ(ComposeSegments({segment}, predicted, depth)(30, 40), 1);
-}
-
-class UncertainRegionTest : public testing::Test {
- protected:
-  UncertainRegionTest()
-      : input_{kNothing.clone(),
-               RectMask({}),
-               RectMask({}),
-               kNothing.clone(),
-               cv::Mat_<uchar>(120, 160, uchar(DepthState::kUnmeasured)),
-               kDepth.clone()} {
-    input_.labels(cv::Rect(60, 40, 40, 40)) = 1;
-  }
-  bool At(int u, int v) const {
-    return DrawUncertainRegion(input_, {5, 10, 30})(v, u) > 0;
-  }
-  UncertainInput input_;
-};
-
-TEST_F(UncertainRegionTest, IsABandAroundSurfacesOnTheBackgroundOnly) {
-  EXPECT_FALSE(At(80, 60));
-  EXPECT_TRUE(At(57, 60));
-  EXPECT_FALSE(At(50, 60));
-}
-
-TEST_F(UncertainRegionTest, IsWiderAtDepthEdges) {
-  input_.depth(cv::Rect(0, 0, 52, 120)) = 3.0;
-  EXPECT_TRUE(At(52, 60));
-  EXPECT_FALSE(At(48, 60));
-}
-
-TEST_F(UncertainRegionTest, CoversUnconfirmedDetections) {
-  input_.unconfirmed = RectMask({10, 10, 20, 20});
-  EXPECT_TRUE(At(20, 20));
-  EXPECT_TRUE(At(32, 20));
-  EXPECT_FALSE(At(45, 20));
-}
-
-TEST_F(UncertainRegionTest, CoversWhatADetectorGaveToASurface) {
-  input_.detected = RectMask({40, 40, 60, 40});
-  EXPECT_TRUE(At(45, 60));
-  // Unless it is where the background is known to be.
-  input_.agreement.setTo(static_cast<int>(DepthState::kObserved));
-  EXPECT_FALSE(At(45, 60));
-}
-
-TEST_F(UncertainRegionTest, CoversWhatStandsBeforeTheBackgroundNearby) {
-  input_.agreement.setTo(static_cast<int>(DepthState::kOccluded));
-  EXPECT_TRUE(At(40, 60));
-  EXPECT_FALSE(At(20, 60));
-}
-
-TEST(UncertainOptions, NamesFieldAndBound) {
-  UncertainOptions options;
-  options.band = -1;
-  ExpectInputError([&] { CheckOptions(options); },
-                   "band = -1: expected 0..100");
 }
 
 }  // namespace

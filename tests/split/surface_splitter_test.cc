@@ -44,8 +44,8 @@ TEST_F(SurfaceSplitterTest, AConfidentDetectionIsBornInTheFirstFrame) {
   Split(scene, {{Moved(scene.Truth(1), 2, 1), "person", 0.9}});
   EXPECT_EQ(Count("born"), 1);
   EXPECT_GT(IouOf(1, scene.Truth(1)), 0.98);
-  EXPECT_EQ(splitter_.instances().at(1).class_name, "person");
-  EXPECT_EQ(splitter_.instances().at(1).kind, SurfaceKind::kNonRigid);
+  EXPECT_EQ(splitter_.tracks().at(1).class_name, "person");
+  EXPECT_EQ(splitter_.tracks().at(1).kind, SurfaceKind::kNonRigid);
 }
 
 TEST_F(SurfaceSplitterTest, LaterBirthsWaitForASecondDetection) {
@@ -74,7 +74,7 @@ TEST_F(SurfaceSplitterTest, IdentitySurvivesMissedDetections) {
         << i;
     EXPECT_GT(IouOf(1, scene.Truth(1)), 0.95) << i;
   }
-  EXPECT_EQ(splitter_.instances().size(), 1u);
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
 }
 
 TEST_F(SurfaceSplitterTest, IdentitySurvivesLabelFlicker) {
@@ -88,8 +88,8 @@ TEST_F(SurfaceSplitterTest, IdentitySurvivesLabelFlicker) {
     Split(scene, {{scene.Truth(1), name, score}});
     EXPECT_GT(IouOf(1, scene.Truth(1)), 0.98) << name;
   }
-  EXPECT_EQ(splitter_.instances().size(), 1u);
-  EXPECT_EQ(splitter_.instances().at(1).class_name, "person");
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
+  EXPECT_EQ(splitter_.tracks().at(1).class_name, "person");
 }
 
 TEST_F(SurfaceSplitterTest, TwoPiecesAreOneSurface) {
@@ -104,7 +104,7 @@ TEST_F(SurfaceSplitterTest, TwoPiecesAreOneSurface) {
   }
   Split(scene, {{scene.Truth(1), "person", 0.9}});
   EXPECT_GT(IouOf(1, scene.Truth(1)), 0.98);
-  EXPECT_EQ(splitter_.instances().size(), 1u);
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
 }
 
 TEST_F(SurfaceSplitterTest, TheMasksOfTheSegmenterAreLeftAsTheyAre) {
@@ -137,7 +137,7 @@ TEST_F(SurfaceSplitterTest, SpuriousDetectionsDoNotBecomeSurfaces) {
     Split(scene, detections);
     EXPECT_EQ(cv::countNonZero(last_.labels), 0) << i;
   }
-  EXPECT_TRUE(splitter_.instances().empty());
+  EXPECT_TRUE(splitter_.tracks().empty());
   // The chair is background, the weak person is left alone.
   EXPECT_LT(cv::countNonZero(last_.uncertain & scene.Truth(1)), 100);
   EXPECT_EQ(cv::countNonZero(~last_.uncertain & scene.Truth(2)), 0);
@@ -150,7 +150,7 @@ TEST_F(SurfaceSplitterTest, RigidClassesAreSurfacesOnRequest) {
   LayeredScene scene;
   scene.Add(kCard, 2.0, 1);
   Split(scene, {{scene.Truth(1), "chair", 0.9}});
-  EXPECT_EQ(splitter_.instances().at(1).kind, SurfaceKind::kRigid);
+  EXPECT_EQ(splitter_.tracks().at(1).kind, SurfaceKind::kRigid);
   EXPECT_GT(IouOf(1, scene.Truth(1)), 0.98);
 }
 
@@ -173,7 +173,7 @@ TEST_F(SurfaceSplitterTest, TwoPeopleCrossWithoutMixing) {
       EXPECT_GT(IouOf(id, truth), 0.9) << "frame " << i << " card " << id;
     }
   }
-  EXPECT_EQ(splitter_.instances().size(), 2u);
+  EXPECT_EQ(splitter_.tracks().size(), 2u);
 }
 
 TEST_F(SurfaceSplitterTest, WhoLeavesComesBackUnderTheSameId) {
@@ -186,11 +186,12 @@ TEST_F(SurfaceSplitterTest, WhoLeavesComesBackUnderTheSameId) {
     }
     Split(scene, detections);
   };
-  for (const int x : {80, 95, 110, 125, 140, 155, 160, 160, 160}) step(x);
-  EXPECT_TRUE(splitter_.instances().at(1).dormant);
+  for (const int x : {80, 95, 110, 125, 140, 155}) step(x);
+  for (int i = 0; i < 16; ++i) step(160);
+  EXPECT_FALSE(splitter_.tracks().at(1).followed());
   for (const int x : {140, 130, 120, 110, 100}) step(x);
-  EXPECT_FALSE(splitter_.instances().at(1).dormant);
-  EXPECT_EQ(splitter_.instances().size(), 1u);
+  EXPECT_TRUE(splitter_.tracks().at(1).followed());
+  EXPECT_EQ(splitter_.tracks().size(), 1u);
   EXPECT_GT(IouOf(1, RectMask({100, 25, 40, 70})), 0.97);
 }
 
@@ -204,27 +205,8 @@ TEST_F(SurfaceSplitterTest, AForgottenSurfaceGoesDormantAtLast) {
   for (int i = 0; i < 3; ++i) Split(scene, {});
   EXPECT_EQ(Count("missed"), 1);
   Split(scene, {});
-  EXPECT_EQ(Count("dormant"), 1);
+  EXPECT_EQ(Count("inactive"), 1);
   EXPECT_EQ(cv::countNonZero(last_.labels), 0);
-}
-
-TEST_F(SurfaceSplitterTest, OneDetectionJoinsTheSurfacesItCovers) {
-  // Seen apart at first (an arm before the body comes into view).
-  LayeredScene apart;
-  apart.Add({40, 25, 20, 70}, 2.0, 1).Add({75, 25, 20, 70}, 2.0, 1);
-  Split(apart, {{RectMask({40, 25, 20, 70}), "person", 0.9},
-                {RectMask({75, 25, 20, 70}), "person", 0.9}});
-  EXPECT_EQ(splitter_.instances().size(), 2u);
-  LayeredScene whole;
-  whole.Add({40, 25, 55, 70}, 2.0, 1);
-  for (int i = 0; i < 6; ++i) {
-    // A detection or two may be wrong.
-    const int merged_into = splitter_.instances().at(2).merged_into;
-    EXPECT_EQ(merged_into, i < 3 ? 0 : 1) << i;
-    Split(whole, {{whole.Truth(1), "person", 0.9}});
-  }
-  EXPECT_EQ(splitter_.instances().at(2).merged_into, 1);
-  EXPECT_GT(IouOf(1, whole.Truth(1)), 0.97);
 }
 
 TEST_F(SurfaceSplitterTest, UsesThePredictionOfATracker) {
@@ -315,7 +297,7 @@ TEST(SurfaceSplitterOnData, KeepsTwoPeopleApart) {
       ++count;
     }
   }
-  EXPECT_EQ(splitter.instances().size(), 2u);
+  EXPECT_EQ(splitter.tracks().size(), 2u);
   EXPECT_GT(sum / count, 0.93);
 }
 

@@ -35,7 +35,7 @@ SurfaceReport SampleSurface(int id, const std::string& label,
   surface.id = id;
   surface.label = label;
   surface.kind = kind;
-  surface.state = "tracked";
+  surface.state = TrackState::kTracked;
   surface.pixels = 5000;
   surface.nodes = kind == SurfaceKind::kRigid ? 1 : 120;
   surface.node_spacing = kind == SurfaceKind::kRigid ? 0 : 0.03;

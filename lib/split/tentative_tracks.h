@@ -1,0 +1,58 @@
+#ifndef SPLITFUSION_LIB_SPLIT_TENTATIVE_TRACKS_H_
+#define SPLITFUSION_LIB_SPLIT_TENTATIVE_TRACKS_H_
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "splitfusion/lib/split/appearance.h"
+
+namespace splitfusion {
+
+/// A thing that was detected and is not yet believed to be a surface.
+struct TentativeTrack {
+  cv::Mat_<uchar> mask;   ///< HxW, 255 inside, when last detected.
+  Appearance appearance;  ///< Then.
+  int frame = 0;          ///< Of that detection.
+  double evidence = 0;    ///< In detections: see TentativeTracks.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(mask, appearance, frame, evidence);
+  }
+};
+
+/// Things that may become surfaces. The evidence for each is a log-likelihood
+/// ratio in units of that of one detection; a frame without a detection takes
+/// half of it back (a detector that finds six of ten, and is wrong twice where
+/// it is right six times), and it never falls below nothing.
+class TentativeTracks {
+ public:
+  /// All of them; indices hold until EndFrame().
+  const std::vector<TentativeTrack>& all() const { return tracks_; }
+
+  /// Records a detection (HxW, 255 inside) of track `index`, of a new one if -1,
+  /// and returns its index. `counts`: whether it speaks for a surface.
+  int Record(int index, int frame, const cv::Mat_<uchar>& mask,
+             const Appearance& appearance, bool counts);
+
+  /// The track has become a surface: it is forgotten at the end of the frame.
+  void Confirm(int index) { tracks_.at(index).evidence = 0; }
+
+  /// Takes evidence from what was not detected in this frame, and forgets what
+  /// has none.
+  void EndFrame(int frame);
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(tracks_);
+  }
+
+ private:
+  std::vector<TentativeTrack> tracks_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_SPLIT_TENTATIVE_TRACKS_H_
