@@ -83,9 +83,10 @@ void SplitFusion::Split(const PreparedFrame& prepared, FrameReport* report) {
   live_.labels = split.labels;
   if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
   report->decisions = std::move(split.decisions);
+  const bool gone = EndGoneTracks();
   FollowTracks();
   report->split_seconds = stopwatch.Restart();
-  if (!AllDrawn(surfaces_, rendering_)) {  // A surface was revived.
+  if (gone || !AllDrawn(surfaces_, rendering_)) {  // Or revived.
     rendering_ =
         RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
     report->render_seconds += stopwatch.Restart();
@@ -131,6 +132,9 @@ void SplitFusion::TrackObjects(FrameReport* report) {
     SurfaceReport& object = objects[i];
     Track* track = splitter_.mutable_track(object.id);
     if (!IsInView(object)) {
+      object.reason =
+          std::to_string(static_cast<int>(100 * object.exposure)) +
+          " % of the model in view";
       track->Apply(TrackEvent::kLittleInView);
     } else if (found[i] ||
                TrackWhereSeen(surfaces_.at(object.id).get(), &object)) {
@@ -167,6 +171,21 @@ std::vector<SurfaceReport> SplitFusion::LookAtObjects() const {
 bool SplitFusion::IsInView(const SurfaceReport& report) const {
   return report.pixels >= options_.min_tracked_pixels &&
          report.exposure >= options_.min_exposure;
+}
+
+bool SplitFusion::EndGoneTracks() {
+  bool any = false;
+  for (const SurfaceReport& object : LookAtObjects()) {
+    Track* track = splitter_.mutable_track(object.id);
+    // So few do not make a surface, by far.
+    if (!track->followed() || object.exposure < options_.min_exposure ||
+        object.pixels >= options_.split.min_pixels / 4) {
+      continue;
+    }
+    track->Apply(TrackEvent::kGone);
+    any = true;
+  }
+  return any;
 }
 
 TrackState SplitFusion::StateOf(const Surface& surface) const {

@@ -86,6 +86,9 @@ class SplitFusion {
   /// Whether so much of a surface is in view that its motion is not that of a
   /// strip.
   bool IsInView(const SurfaceReport& report) const;
+  /// Ends the tracks of surfaces that nothing hides and that are not there all
+  /// the same, so that they hide nothing; whether there are any.
+  bool EndGoneTracks();
   TrackState StateOf(const Surface& surface) const;
   /// Shifts a surface to where its live pixels are; whether such a place is
   /// found.

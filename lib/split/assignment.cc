@@ -30,7 +30,8 @@ constexpr double kUntrusted = 3;
 /// A share of a detection inside of a surface that makes it a piece of it.
 constexpr double kMinContained = 0.6;
 
-/// Fewer predicted pixels than this share of a detection tell nothing of it.
+/// Fewer predicted and not occluded pixels than this share of a detection tell
+/// nothing of it.
 constexpr double kMinPredicted = 0.1;
 
 double Limited(double ratio) { return std::clamp(ratio, -kLimit, kLimit); }
@@ -60,6 +61,7 @@ struct CommonPixels {
   int all = 0;
   int measured = 0;  // With live depth.
   int same = 0;      // At the surface's depth.
+  int occluded = 0;  // Behind something nearer.
 };
 
 /// Common pixels by surface id; `detected` receives the size of the mask.
@@ -81,17 +83,19 @@ std::map<int, CommonPixels> CountCommon(const cv::Mat_<uchar>& mask,
       ++count->all;
       count->measured += state != DepthState::kUnmeasured;
       count->same += state == DepthState::kObserved;
+      count->occluded += state == DepthState::kOccluded;
     }
   }
   return counts;
 }
 
-Overlap MakeOverlap(int detected, int predicted, const CommonPixels& common) {
+/// `visible`: predicted pixels that nothing nearer occludes.
+Overlap MakeOverlap(int detected, int visible, const CommonPixels& common) {
   Overlap overlap;
   if (common.all == 0) return overlap;
   const int elsewhere = common.measured - common.same;
   overlap.iou = double(common.all - elsewhere) /
-                (detected + predicted - common.all);
+                (detected + visible - (common.all - common.occluded));
   if (common.measured > 0) {
     overlap.contained =
         double(common.same) / common.measured * common.all / detected;
@@ -108,8 +112,8 @@ double MaskIou(const cv::Mat& a, const cv::Mat& b) {
 class Comparison {
  public:
   Comparison(const Candidate& candidate, const KnownSurfaces& known,
-             const std::map<int, int>& predicted)
-      : candidate_(candidate), known_(known), predicted_(predicted) {
+             const std::map<int, int>& visible)
+      : candidate_(candidate), known_(known), visible_(visible) {
     common_ = CountCommon(candidate.mask, known.predicted_labels,
                           known.agreement, &detected_);
   }
@@ -117,7 +121,7 @@ class Comparison {
   Overlap OverlapWith(int id) const {
     const auto common = common_.find(id);
     if (common == common_.end()) return {};
-    return MakeOverlap(detected_, predicted_.at(id), common->second);
+    return MakeOverlap(detected_, visible_.at(id), common->second);
   }
 
   double GainOf(const Track& track) const {
@@ -127,9 +131,9 @@ class Comparison {
     const double gain =
         AppearanceRatio(candidate_.appearance, track.appearance,
                         known_.frame - track.last_detected_frame);
-    const auto predicted = predicted_.find(track.id);
-    const bool expected = predicted != predicted_.end() &&
-                          predicted->second > kMinPredicted * detected_;
+    const auto visible = visible_.find(track.id);
+    const bool expected = visible != visible_.end() &&
+                          visible->second > kMinPredicted * detected_;
     return expected ? gain + IouRatio(iou) : gain;
   }
 
@@ -156,18 +160,23 @@ class Comparison {
  private:
   const Candidate& candidate_;
   const KnownSurfaces& known_;
-  const std::map<int, int>& predicted_;  // Pixels by id.
+  const std::map<int, int>& visible_;  // Predicted pixels by id.
   std::map<int, CommonPixels> common_;
   int detected_ = 0;
 };
 
-std::map<int, int> CountPredicted(const LabelImage& labels) {
+/// Predicted pixels that nothing nearer occludes, by surface id.
+std::map<int, int> CountVisible(const LabelImage& labels,
+                                const cv::Mat_<uchar>& agreement) {
   std::map<int, int> counts;
   int label = -1;
   int* count = nullptr;
-  for (const std::uint16_t value : labels) {
-    if (value != label) count = &counts[label = value];
-    ++*count;
+  for (int v = 0; v < labels.rows; ++v) {
+    for (int u = 0; u < labels.cols; ++u) {
+      if (labels(v, u) != label) count = &counts[label = labels(v, u)];
+      *count += static_cast<DepthState>(agreement(v, u)) !=
+                DepthState::kOccluded;
+    }
   }
   return counts;
 }
@@ -181,7 +190,8 @@ Overlap ComputeOverlap(const cv::Mat_<uchar>& mask, int surface,
   const auto counts = CountCommon(mask, predicted_labels, agreement, &detected);
   const auto found = counts.find(surface);
   if (found == counts.end()) return {};
-  return MakeOverlap(detected, cv::countNonZero(predicted_labels == surface),
+  return MakeOverlap(detected,
+                     CountVisible(predicted_labels, agreement).at(surface),
                      found->second);
 }
 
@@ -206,7 +216,8 @@ int FindReturned(const Track& track, const TrackTable& tracks, int frame) {
 
 std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
                                     const KnownSurfaces& known) {
-  const std::map<int, int> predicted = CountPredicted(known.predicted_labels);
+  const std::map<int, int> visible =
+      CountVisible(known.predicted_labels, known.agreement);
   const int surfaces = static_cast<int>(known.tracks.size());
   cv::Mat_<double> gains(static_cast<int>(candidates.size()),
                          surfaces + static_cast<int>(known.tentative.size()));
@@ -214,7 +225,7 @@ std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
   for (const Candidate& candidate : candidates) {
     double* gain = gains[static_cast<int>(comparisons.size())];
     const Comparison& comparison =
-        comparisons.emplace_back(candidate, known, predicted);
+        comparisons.emplace_back(candidate, known, visible);
     for (const auto& [id, track] : known.tracks) {
       *gain++ = track.merged_into > 0 ? 0 : comparison.GainOf(track);
     }

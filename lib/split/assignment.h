@@ -34,7 +34,8 @@ struct Match {
 
 /// How a detection and a projected surface cover each other.
 struct Overlap {
-  /// Intersection over union; what lies at another depth is not common.
+  /// Intersection over union of what nothing nearer occludes; what lies at
+  /// another depth is not common.
   double iou = 0;
   /// Share of the detection inside of the surface, at its depth.
   double contained = 0;

@@ -90,7 +90,7 @@ void EndHeldTracks(const std::vector<cv::Mat_<uchar>>& held,
           kSame) {
         continue;
       }
-      track.Apply(TrackEvent::kMissedLong);
+      track.Apply(TrackEvent::kGone);
       ForgetPrediction(compared->labels == id, compared);
     }
   }

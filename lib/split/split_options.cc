@@ -20,21 +20,19 @@ void SplitOptions::List(OptionList* list) {
                "A larger detection makes no surface.");
   list->Number("min_instance_pixels", &min_pixels, Range::AtLeast(1), "pixels",
                "Instances with fewer pixels with depth are ignored.");
-  list->Number(
-      "min_match_iou", &min_match_iou, {0, 1, true}, "",
-      "Least overlap of a detection with the projected surface that it "
-      "belongs to.");
   list->Number("max_missed_frames", &max_missed_frames, Range::AtLeast(0),
                "frames", "A surface is followed so long without a detection.");
   list->Number("birth_frames", &birth_frames, Range::AtLeast(1), "frames",
-               "Frames with a detection, of four times as many, that make a "
-               "surface; twice as many where background was mapped.");
+               "Detections more than half of the frames without one that make "
+               "a surface; twice as many where background was mapped for long.");
   list->Number("confident_score", &confident_score, Range::Share(), "",
                "From this score on a detection of the first frame makes a "
                "surface at once.");
   list->Number("min_contact", &min_contact, {0, 1, true}, "",
                "A new detection is a part of a surface that it touches along "
                "this share of its border.");
+  list->Number("uncertain_band", &uncertain_band, {0, 100}, "pixels",
+               "Background so near to a surface is neither tracked nor fused.");
   list->Part("cut_", &graph_cut);
   list->Part("evidence_", &prior);
 }

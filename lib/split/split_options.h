@@ -16,16 +16,17 @@ namespace splitfusion {
 struct SplitOptions {
   GraphCutOptions graph_cut;     ///< Edges of the cut.
   PriorOptions prior;            ///< Evidence for it.
+  int uncertain_band = 5;        ///< Background that is left alone: pixels
+                                 ///< around every surface.
   double min_score = 0.4;        ///< A detection below counts only if it covers
                                  ///< a known surface well.
   double max_area = 0.75;        ///< Fraction of the image; larger likewise.
   int min_pixels = 600;          ///< With depth; smaller instances are ignored.
-  double min_match_iou = 0.2;    ///< Detection to projected surface.
   int max_missed_frames = 15;    ///< Kept alive without a detection.
-  int birth_frames = 2;          ///< Detections in as many of the last
-                                 ///< 4 x birth_frames frames make a surface;
-                                 ///< twice as many if it stands where
-                                 ///< background was mapped.
+  int birth_frames = 2;          ///< Detections that make a surface, less half
+                                 ///< of the frames without one; twice as many
+                                 ///< if it stands where background has been
+                                 ///< mapped for long.
   double confident_score = 0.5;  ///< A detection of the first frame makes a
                                  ///< surface at once from this score on.
   /// A newcomer is a part of the surface that it touches along this share of

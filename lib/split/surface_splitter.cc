@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <utility>
 
@@ -19,8 +20,9 @@ namespace {
 /// Share of the background that agrees with the map when the pose is right.
 constexpr double kMinFit = 0.7;
 
-/// So much more evidence a new surface needs where background was mapped, and
-/// one of a rigid class, of which only frames count in which it moved.
+/// So much more evidence a new surface needs where background was mapped, if
+/// longer than a detector misses what it knows, and one of a rigid class, of
+/// which only frames count in which it moved.
 constexpr double kMappedFactor = 2, kRigidFactor = 2.5;
 
 void CheckSize(const std::string& name, const cv::Mat& image,
@@ -206,7 +208,7 @@ void SurfaceSplitter::RecognizeReturned(int frame, LabelImage* predicted,
         track.followed() ? FindReturned(track, tracks_, frame) : 0;
     if (returned == 0) continue;
     track.merged_into = returned;
-    track.Apply(TrackEvent::kMissedLong);
+    track.Apply(TrackEvent::kGone);
     SplitDecision decision{"merged", track.id, track.class_name, 0, match.iou};
     decisions->push_back(decision);
     predicted->setTo(returned, *predicted == track.id);
@@ -296,7 +298,7 @@ void SurfaceSplitter::SettleSurfaces(const std::vector<Segment>& segments,
     }
     const int missed = input.frame.index - track.last_detected_frame;
     if (missed > options_.max_missed_frames) {
-      track.Apply(TrackEvent::kMissedLong);
+      track.Apply(TrackEvent::kGone);
     }
     decisions->push_back(
         MakeDecision(track.followed() ? "missed" : "inactive", segment));
@@ -342,7 +344,8 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
   double needed = options_.birth_frames;
   if (!IsTrackable(table_.Kind(segment.class_name), options_)) {
     needed *= kRigidFactor;
-  } else if (2 * cv::countNonZero(mapped) > cv::countNonZero(pixels)) {
+  } else if (frames_ > options_.max_missed_frames &&
+             2 * cv::countNonZero(mapped) > cv::countNonZero(pixels)) {
     needed *= kMappedFactor;
   }
   const bool at_once =
@@ -383,8 +386,13 @@ cv::Mat SurfaceSplitter::DrawUncertain(const std::vector<Segment>& segments,
   const cv::Mat background_seen =
       (input.compared.labels == 0) &
       (agreement == static_cast<int>(DepthState::kObserved));
+  cv::Mat near;
+  const int size = 2 * options_.uncertain_band + 1;
+  cv::dilate(
+      (labels > 0) | unconfirmed, near,
+      cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(size, size)));
   const cv::Mat uncertain =
-      unconfirmed | Protrusions(labels, missed, input.compared, input.frame.depth) |
+      near | Protrusions(labels, missed, input.compared, input.frame.depth) |
       (MasksBut(-1, segments, labels.size()) & ~background_seen) |
       (expected & (agreement != static_cast<int>(DepthState::kFree)));
   return uncertain & (labels == 0);

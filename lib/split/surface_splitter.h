@@ -93,8 +93,8 @@ class SurfaceSplitter {
                    const Input& input);
   LabelImage DrawLabels(const std::vector<Segment>& segments,
                         const LabelImage& segment_labels) const;
-  /// What is neither of a surface nor surely background: unconfirmed, one with
-  /// a surface in front of the background, or given to a surface by a mask or
+  /// What is neither of a surface nor surely background: unconfirmed, close to
+  /// a surface, one with it in front of the background, or given to a surface by a mask or
   /// by the projection though not by the cut.
   cv::Mat DrawUncertain(const std::vector<Segment>& segments,
                         const LabelImage& labels,

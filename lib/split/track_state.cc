@@ -10,7 +10,7 @@ TrackState Next(TrackState state, TrackEvent event) {
     return event == TrackEvent::kDetected ? TrackState::kOccluded : state;
   }
   switch (event) {
-    case TrackEvent::kMissedLong:
+    case TrackEvent::kGone:
       return TrackState::kInactive;
     case TrackEvent::kLittleInView:
       return TrackState::kOccluded;

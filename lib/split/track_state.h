@@ -18,7 +18,8 @@ enum class TrackState {
 enum class TrackEvent {
   kConfirmed,     ///< Enough detections for a surface.
   kDetected,      ///< A detection is of it.
-  kMissedLong,    ///< No detection for SplitOptions::max_missed_frames.
+  kGone,          ///< No detection for SplitOptions::max_missed_frames, or
+                  ///< nothing hides it and it is not there.
   kLittleInView,  ///< Hardly any of it can be seen, or is.
   kFits,          ///< Tracking succeeded.
   kMisfits,       ///< Tracking failed in plain view.

@@ -54,7 +54,8 @@ TEST(MovingObject, BecomesARigidSurfaceThatIsTrackedWhenItMoves) {
       EXPECT_EQ(run.fusion().surfaces().size(), 1u) << i;
     }
     for (const SurfaceReport& surface : report.surfaces) {
-      tracked += surface.id == 1 && ToString(surface.state) == "tracked";
+      tracked += surface.id == 1 && surface.event.empty() &&
+                 surface.state == TrackState::kTracked;
     }
   }
   const Surface* board = FindSurface(run.fusion(), "suitcase");

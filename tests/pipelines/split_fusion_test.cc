@@ -191,7 +191,8 @@ void HideBehindBoard(Frame* frame, std::vector<InstanceMask>* detections) {
     detection.mask(board).setTo(0);
     InstanceMask occluder = detection;
     occluder.class_name = "dog";
-    occluder.mask = cv::Mat::zeros(image.size(), detection.mask.type());
+    // Not zeros(), which would be written into the mask they share.
+    occluder.mask = cv::Mat(image.size(), CV_8UC1, cv::Scalar(0));
     occluder.mask(board).setTo(255);
     detections->push_back(occluder);
     return;

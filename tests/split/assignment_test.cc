@@ -134,7 +134,7 @@ TEST_F(AssignmentTest, WhoComesOutOfHidingIsKnownByColourAndPlace) {
 
 TEST_F(AssignmentTest, SomebodyElseIsSomebodyElse) {
   Hide(1);
-  tracks_.at(1).Apply(TrackEvent::kMissedLong);
+  tracks_.at(1).Apply(TrackEvent::kGone);
   LayeredScene scene;
   scene.Add(kLeft, 2.0, 3).Add(kRight, 2.0, 2);
   Look(scene);
@@ -143,7 +143,7 @@ TEST_F(AssignmentTest, SomebodyElseIsSomebodyElse) {
 
 TEST_F(AssignmentTest, WhoLeftIsKnownWhereverHeReturns) {
   Hide(1);
-  tracks_.at(1).Apply(TrackEvent::kMissedLong);
+  tracks_.at(1).Apply(TrackEvent::kGone);
   LayeredScene scene;
   const cv::Rect there(60, 20, 25, 80);
   scene.Add(there, 2.8, 1).Add(kRight, 2.0, 2);
@@ -189,7 +189,7 @@ TEST_F(AssignmentTest, OverlapCountsWhatIsAtTheSurfacesDepth) {
       static_cast<uchar>(DepthState::kOccluded);
   const Overlap overlap =
       ComputeOverlap(RectMask({10, 20, 20, 80}), 1, labels_, agreement_);
-  EXPECT_DOUBLE_EQ(overlap.iou, 0.375);
+  EXPECT_DOUBLE_EQ(overlap.iou, 60.0 / 140);  // 20 rows are occluded.
   EXPECT_DOUBLE_EQ(overlap.contained, 0.75);
 }
 
@@ -197,7 +197,7 @@ TEST_F(AssignmentTest, OverlapCountsWhatIsAtTheSurfacesDepth) {
 class FindReturnedTest : public AssignmentTest {
  protected:
   FindReturnedTest() {
-    tracks_.at(1).Apply(TrackEvent::kMissedLong);
+    tracks_.at(1).Apply(TrackEvent::kGone);
     AddTrack(40, "person", SurfaceKind::kNonRigid, &tracks_);
   }
   /// Who surface 3 is after a view of these pixels.

@@ -18,7 +18,7 @@ TEST(TrackState, FollowsItsEvents) {
     EXPECT_EQ(Next(state, E::kFits), S::kTracked);
     EXPECT_EQ(Next(state, E::kMisfits), S::kLost);
     EXPECT_EQ(Next(state, E::kLittleInView), S::kOccluded);
-    EXPECT_EQ(Next(state, E::kMissedLong), S::kInactive);
+    EXPECT_EQ(Next(state, E::kGone), S::kInactive);
     EXPECT_EQ(Next(state, E::kDetected), state);
   }
   // Who comes back is looked for before he is believed to be tracked.
@@ -53,7 +53,7 @@ TEST(TrackTable, GivesIdsInOrderOfBirth) {
   EXPECT_EQ(AddTrack(3, "chair", SurfaceKind::kRigid, &tracks), 2);
   EXPECT_EQ(tracks.at(2).first_frame, 3);
   EXPECT_EQ(tracks.at(2).state, TrackState::kTracked);
-  tracks.at(1).Apply(TrackEvent::kMissedLong);
+  tracks.at(1).Apply(TrackEvent::kGone);
   EXPECT_EQ(Followed(tracks), std::set<int>{2});
 }
 
