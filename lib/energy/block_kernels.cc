@@ -115,57 +115,6 @@ void AddOuterProducts(const double* rows, int count, int nodes, int first,
 }
 
 SPLITFUSION_VECTOR_CLONES
-void AddTransposedProduct(const double* a, const double* b, double* out) {
-  AddRowProducts(a, b, 6, 6, out);
-}
-
-namespace {
-
-/// B P of one row of a block: [omega, tau] as a force at the end of the arm.
-SPLITFUSION_INLINE void CarryRow(const double* from, const double* arm,
-                                 double* to) {
-  to[0] = from[0] + (arm[1] * from[5] - arm[2] * from[4]);
-  to[1] = from[1] + (arm[2] * from[3] - arm[0] * from[5]);
-  to[2] = from[2] + (arm[0] * from[4] - arm[1] * from[3]);
-  for (int c = 3; c < 6; ++c) to[c] = from[c];
-}
-
-/// P^T B of a block, in place.
-SPLITFUSION_INLINE void CarryColumns(const double* arm, double block[6][6]) {
-  for (int c = 0; c < 6; ++c) {
-    block[0][c] += arm[1] * block[5][c] - arm[2] * block[4][c];
-    block[1][c] += arm[2] * block[3][c] - arm[0] * block[5][c];
-    block[2][c] += arm[0] * block[4][c] - arm[1] * block[3][c];
-  }
-}
-
-}  // namespace
-
-SPLITFUSION_VECTOR_CLONES
-void AddRigidlyCarried(int size, const int* row_begin, const int* columns,
-                       const double* blocks, const double* arms,
-                       const int* patches, const int* targets, double* out) {
-  for (int i = 0; i < size; ++i) {
-    for (int k = row_begin[i]; k < row_begin[i + 1]; ++k) {
-      const int j = columns[k];
-      double moved[6][6];
-      for (int r = 0; r < 6; ++r) {
-        CarryRow(blocks + kBlock * k + 6 * r, arms + 3 * j, moved[r]);
-      }
-      CarryColumns(arms + 3 * i, moved);
-      double* sum = out + kBlock * targets[k];
-      const int side = patches[j] - patches[i];
-      if (side >= 0) {
-        for (int e = 0; e < kBlock; ++e) sum[e] += moved[e / 6][e % 6];
-      }
-      if (side < 0 || (side == 0 && i != j)) {
-        for (int e = 0; e < kBlock; ++e) sum[e] += moved[e % 6][e / 6];
-      }
-    }
-  }
-}
-
-SPLITFUSION_VECTOR_CLONES
 void MultiplySymmetric(int size, const int* row_begin, const int* columns,
                        const double* blocks, const double* x, double* y) {
   std::fill_n(y, 6 * size, 0.0);
@@ -206,58 +155,6 @@ double MultiplyDiagonal(int size, const double* blocks, const double* x,
     *reinterpret_cast<Vector2*>(y + 6 * i + 4) = high;
     dot4 += low * SPLITFUSION_LOAD4(own);
     dot2 += high * *reinterpret_cast<const Vector2*>(own + 4);
-  }
-  return SPLITFUSION_SUM4(dot4) + (dot2[0] + dot2[1]);
-}
-
-namespace {
-
-/// U^T y = x in place: what is done with a row is handed on to those below.
-SPLITFUSION_INLINE void SolveTransposed(int size, const int* row_begin,
-                                        const int* columns,
-                                        const double* blocks, double* y) {
-  for (int row = 0; row < size; ++row) {
-    NineVectors own = {};
-    FillRows(y + 6 * row, &own);
-    for (int k = row_begin[row] + 1; k < row_begin[row + 1]; ++k) {
-      AddTransposed(own, BlockAt(blocks, k), y + 6 * columns[k]);
-    }
-  }
-}
-
-/// LoadColumns() of six numbers that were stored as 4 and 2 a moment ago.
-SPLITFUSION_INLINE void ReloadColumns(const double* six, SixColumns* columns) {
-  const Vector2 last = *reinterpret_cast<const Vector2*>(six + 4);
-  const Vector4 tail = __builtin_shufflevector(last, last, 0, 1, 0, 1);
-  columns->low = SPLITFUSION_LOAD4(six);
-  columns->high = SPLITFUSION_HIGHS(columns->low, tail);
-  columns->middle = SPLITFUSION_LOWS(tail, columns->low);
-}
-
-}  // namespace
-
-SPLITFUSION_VECTOR_CLONES
-double SolveFactorized(int size, const int* row_begin, const int* columns,
-                       const double* blocks, const double* x, double* y) {
-  std::copy_n(x, 6 * size, y);
-  SolveTransposed(size, row_begin, columns, blocks, y);
-  // D and U: a row gathers from those below.
-  Vector4 dot4 = {0, 0, 0, 0};
-  Vector2 dot2 = {0, 0};
-  for (int row = size - 1; row >= 0; --row) {
-    NineVectors sums = {};
-    for (int k = row_begin[row]; k < row_begin[row + 1]; ++k) {
-      SixColumns six;
-      ReloadColumns(y + 6 * columns[k], &six);
-      AddProducts(BlockAt(blocks, k), six, &sums);
-    }
-    Vector2 out[3] = {};
-    SumRows(sums, out);
-    const Vector4 low = SPLITFUSION_JOINED(out[0], out[1]);
-    *reinterpret_cast<Vector4*>(y + 6 * row) = low;
-    *reinterpret_cast<Vector2*>(y + 6 * row + 4) = out[2];
-    dot4 += low * SPLITFUSION_LOAD4(x + 6 * row);
-    dot2 += out[2] * *reinterpret_cast<const Vector2*>(x + 6 * row + 4);
   }
   return SPLITFUSION_SUM4(dot4) + (dot2[0] + dot2[1]);
 }

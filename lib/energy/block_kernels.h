@@ -19,19 +19,6 @@ void AddOuterProducts(const double* rows, int count, int nodes, int first,
 void AddGradient(const double* residuals, const double* rows, int count,
                  int columns, double* gradient);
 
-/// out += a^T b for blocks.
-void AddTransposedProduct(const double* a, const double* b, double* out);
-
-/// Adds P^T A P to `out`, A as for MultiplySymmetric(): row i of P is
-/// [1 0; -[arm_i]x 1], which carries a twist [omega, tau] along arm_i (three
-/// numbers a row), at column patches[i]. Of `out` the upper triangle is stored,
-/// too: block k of A, row i and column j, is added to block targets[k], that of
-/// the lower patch as row; transposed if that is patches[j], both ways if the
-/// patches are one and i, j are not.
-void AddRigidlyCarried(int size, const int* row_begin, const int* columns,
-                       const double* blocks, const double* arms,
-                       const int* patches, const int* targets, double* out);
-
 /// y = A x for a symmetric A of `size` block rows, of which row i holds the
 /// blocks row_begin[i] .. row_begin[i + 1] of the upper triangle, the diagonal
 /// first.
@@ -41,11 +28,6 @@ void MultiplySymmetric(int size, const int* row_begin, const int* columns,
 /// y_i = B_i x_i for `size` symmetric blocks B_i; returns x . y.
 double MultiplyDiagonal(int size, const double* blocks, const double* x,
                         double* y);
-
-/// Solves U^T D U y = x for a unit upper triangular U: row i holds D_i^-1 at
-/// row_begin[i] and -U_ij after it. Returns x . y.
-double SolveFactorized(int size, const int* row_begin, const int* columns,
-                       const double* blocks, const double* x, double* y);
 
 /// a . b of n numbers.
 double DotProduct(int n, const double* a, const double* b);

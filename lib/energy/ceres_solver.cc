@@ -151,9 +151,6 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
 class CeresSolver : public Solver {
  public:
   explicit CeresSolver(const SolverOptions& options) : options_(options) {
-    const std::string& name = options.preconditioner;
-    CheckOption(name != "two_level" && name != "block_ic0", "preconditioner",
-                name, "auto, identity or jacobi with solver ceres");
     constexpr double kLeast = 1e-32, kLargest = 1e16;  // Of Ceres.
     CheckOption(
         options.initial_radius >= kLeast && options.initial_radius <= kLargest,

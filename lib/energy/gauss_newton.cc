@@ -48,7 +48,7 @@ class Minimization {
       : options_(options),
         problem_(input, graph),
         matrix_(problem_.MakeMatrix()),
-        linear_solver_(linear(options, graph)),
+        linear_solver_(linear(options)),
         diagonal_(graph.size()),
         twists_(kTwistSize * graph.size(), 0.0),
         radius_(input.initial_radius > 0 ? input.initial_radius

@@ -28,14 +28,12 @@ class LinearSolver {
                                std::vector<Vector6>* x) = 0;
 };
 
-/// Makes the linear solver of one minimisation over the twists of the graph's
-/// nodes, as they are now; the options must outlive it.
-using LinearSolverFactory = std::unique_ptr<LinearSolver> (*)(
-    const SolverOptions& options, const DeformationGraph& graph);
+/// Makes the linear solver of one minimisation; the options must outlive it.
+using LinearSolverFactory =
+    std::unique_ptr<LinearSolver> (*)(const SolverOptions& options);
 
 /// Conjugate gradients, preconditioned as the options say.
-std::unique_ptr<LinearSolver> MakePcgSolver(const SolverOptions& options,
-                                            const DeformationGraph& graph);
+std::unique_ptr<LinearSolver> MakePcgSolver(const SolverOptions& options);
 
 /// Supernodal Cholesky factorisation by CHOLMOD. Nodes are ordered once, for
 /// the pattern of the first matrix; later ones must have the same.

@@ -1,7 +1,9 @@
 #include "splitfusion/lib/energy/pcg.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/energy/block_kernels.h"
 
 namespace splitfusion {
@@ -12,16 +14,38 @@ double Dot(const std::vector<Vector6>& a, const std::vector<Vector6>& b) {
                     b.data()->data());
 }
 
+/// out = M^-1 in; returns in . out.
+double Apply(const Blocks6& preconditioner, const std::vector<Vector6>& in,
+             std::vector<Vector6>* out) {
+  return MultiplyDiagonal(static_cast<int>(in.size()),
+                          preconditioner.data()->data(), in.data()->data(),
+                          out->data()->data());
+}
+
 }  // namespace
 
+Blocks6 MakePreconditioner(const std::string& name,
+                           const SymmetricBlockMatrix& matrix) {
+  CheckOption(name == "auto" || name == "jacobi" || name == "identity",
+              "preconditioner", name, "auto, jacobi or identity");
+  Blocks6 inverses(matrix.size(), Block6::Identity());
+  if (name == "identity") return inverses;
+  for (int i = 0; i < matrix.size(); ++i) {
+    const Block6 inverse = matrix.Diagonal(i).ldlt().solve(
+        Eigen::Matrix<double, 6, 6>::Identity());
+    inverses[i] = 0.5 * (inverse + inverse.transpose());
+  }
+  return inverses;
+}
+
 CgResult SolveByPcg(const SymmetricBlockMatrix& a,
-                    const Preconditioner& preconditioner,
+                    const Blocks6& preconditioner,
                     const std::vector<Vector6>& b, double tolerance,
                     int max_iterations, std::vector<Vector6>* x) {
   const int n = 6 * static_cast<int>(b.size());
   x->assign(b.size(), Vector6::Zero());
   std::vector<Vector6> residual = b, z(b.size()), product(b.size());
-  double rz = preconditioner.Apply(residual, &z);
+  double rz = Apply(preconditioner, residual, &z);
   std::vector<Vector6> direction = z;
   const double norm_b = std::sqrt(Dot(b, b));
   CgResult result;
@@ -36,7 +60,7 @@ CgResult SolveByPcg(const SymmetricBlockMatrix& a,
         x->data()->data(), residual.data()->data());
     ++result.iterations;
     result.relative_residual = std::sqrt(squared) / norm_b;
-    const double next = preconditioner.Apply(residual, &z);
+    const double next = Apply(preconditioner, residual, &z);
     NextDirection(n, next / rz, z.data()->data(), direction.data()->data());
     rz = next;
   }

@@ -1,10 +1,10 @@
 #ifndef SPLITFUSION_LIB_ENERGY_PCG_H_
 #define SPLITFUSION_LIB_ENERGY_PCG_H_
 
+#include <string>
 #include <vector>
 
 #include "splitfusion/lib/energy/block_matrix.h"
-#include "splitfusion/lib/energy/preconditioner.h"
 
 namespace splitfusion {
 
@@ -15,10 +15,18 @@ struct CgResult {
   double relative_residual = 0;  ///< |b - A x| / |b|
 };
 
-/// Solves A x = b by preconditioned conjugate gradients from x = 0 until the
-/// relative residual is below `tolerance` or `max_iterations` are done.
+/// Preconditioner of a positive definite matrix by its name: the inverses of its
+/// diagonal blocks (jacobi, auto), or the identity.
+///
+/// @throw InputError on an unknown name; lists the known ones.
+Blocks6 MakePreconditioner(const std::string& name,
+                           const SymmetricBlockMatrix& matrix);
+
+/// Solves A x = b by conjugate gradients, preconditioned by diagonal blocks,
+/// from x = 0 until the relative residual is below `tolerance` or
+/// `max_iterations` are done.
 CgResult SolveByPcg(const SymmetricBlockMatrix& a,
-                    const Preconditioner& preconditioner,
+                    const Blocks6& preconditioner,
                     const std::vector<Vector6>& b, double tolerance,
                     int max_iterations, std::vector<Vector6>* x);
 

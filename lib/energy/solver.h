@@ -25,9 +25,7 @@ struct SolverOptions {
   /// sparse_normal_cholesky), dense_qr, dense_normal_cholesky,
   /// sparse_normal_cholesky, cgnr.
   std::string linear_solver = "auto";
-  /// Of gn_pcg: two_level, jacobi, block_ic0 or identity, see
-  /// MakePreconditioner(); of cgnr: jacobi or identity. "auto" is the first of
-  /// either.
+  /// Of gn_pcg and cgnr: jacobi (auto; the diagonal blocks) or identity.
   std::string preconditioner = "auto";
   /// levenberg_marquardt or dogleg.
   std::string trust_region = "levenberg_marquardt";

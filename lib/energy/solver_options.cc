@@ -13,9 +13,8 @@ void SolverOptions::List(OptionList* list) {
                "Of ceres.")
       .common = true;
   list->Choice("preconditioner", &preconditioner,
-               {"auto", "two_level", "jacobi", "block_ic0", "identity"},
-               "Of gn_pcg (auto: two_level); of cgnr jacobi (auto) or "
-               "identity.")
+               {"auto", "jacobi", "identity"},
+               "Of gn_pcg and cgnr; auto is jacobi.")
       .common = true;
   list->Choice("trust_region", &trust_region, {"levenberg_marquardt", "dogleg"},
                "How a step is kept short.")

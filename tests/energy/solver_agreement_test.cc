@@ -94,10 +94,8 @@ INSTANTIATE_TEST_SUITE_P(
     Names, EverySolver,
     ::testing::Values(
         Choice{"gn_pcg", "auto", "auto", kLm},
-        Choice{"gn_pcg", "auto", "two_level", kLm},
         Choice{"gn_pcg", "auto", "jacobi", kLm},
         Choice{"gn_pcg", "auto", "identity", kLm},
-        Choice{"gn_pcg", "auto", "block_ic0", kLm},
         Choice{"gn_cholesky", "auto", "jacobi", kLm},
         Choice{"ceres", "auto", "jacobi", kLm},
         Choice{"ceres", "dense_qr", "jacobi", kLm},

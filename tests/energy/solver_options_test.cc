@@ -37,23 +37,11 @@ TEST(SolverOptions, UnknownNamesListTheKnownOnes) {
                   std::string("linear_solver = ") + name + ": " + solvers);
   }
   ExpectRefused([](SolverOptions* o) { o->preconditioner = "schur_jacobi"; },
-                "preconditioner = schur_jacobi: expected auto, two_level, "
-                "jacobi, block_ic0 or identity");
+                "preconditioner = schur_jacobi: expected auto, jacobi or "
+                "identity");
   ExpectRefused([](SolverOptions* o) { o->trust_region = "newton"; },
                 "trust_region = newton: expected levenberg_marquardt or "
                 "dogleg");
-}
-
-TEST(SolverOptions, CeresHasNoPreconditionersOfOurOwn) {
-  for (const std::string name : {"block_ic0", "two_level"}) {
-    ExpectRefused(
-        [&](SolverOptions* o) {
-          o->solver = "ceres";
-          o->preconditioner = name;
-        },
-        "preconditioner = " + name +
-            ": expected auto, identity or jacobi with solver ceres");
-  }
 }
 
 TEST(SolverOptions, DoglegNeedsAFactorisation) {
