@@ -224,7 +224,16 @@ bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
   const bool was_occluded = StateOf(*surface) == TrackState::kOccluded;
   if (!PlaceWhereSeen(surface, report) && !was_occluded) return false;
-  if (TrackObject(surface, report)) return true;
+  if (TrackObject(surface, report)) {
+    const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
+    const double explained =
+        Explained(RenderAlone(*surface, camera).raster.depth,
+                  options_.render_stride, live_, surface->id());
+    if (explained >= options_.min_explained) return true;
+    report->reason =
+        "explains " + std::to_string(static_cast<int>(100 * explained)) +
+        " % of what is seen of it";
+  }
   *surface->mutable_graph() = before;
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));

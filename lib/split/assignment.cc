@@ -134,7 +134,11 @@ class Comparison {
     const auto visible = visible_.find(track.id);
     const bool expected = visible != visible_.end() &&
                           visible->second > kMinPredicted * detected_;
-    return expected ? gain + IouRatio(iou) : gain;
+    if (!expected) return gain;
+    // Where a track that is not tracked lies is a guess.
+    return track.state == TrackState::kTracked
+               ? gain + IouRatio(iou)
+               : gain + std::max(0.0, IouRatio(iou));
   }
 
   double GainOf(const TentativeTrack& track) const {
@@ -199,7 +203,7 @@ int FindReturned(const Track& track, const TrackTable& tracks, int frame) {
   int returned = 0;
   double best = 0;
   for (const auto& [id, other] : tracks) {
-    if (other.followed() || other.merged_into > 0 ||
+    if (other.state == TrackState::kTracked || other.merged_into > 0 ||
         other.kind != track.kind ||
         other.last_detected_frame >= track.first_frame ||
         other.appearance.pixels < track.appearance.pixels) {

@@ -66,9 +66,9 @@ struct KnownSurfaces {
 std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
                                     const KnownSurfaces& known);
 
-/// The inactive surface that a new one turns out to be, as more of it comes
-/// into view: it was last detected before the birth of `track`, is alike in
-/// colour and place, and more was seen of it. 0 if none.
+/// The surface that a new one turns out to be, as more of it comes into view:
+/// one that is not tracked and was last detected before the birth of `track`, is
+/// alike in colour and place, and of which more was seen. 0 if none.
 int FindReturned(const Track& track, const TrackTable& tracks, int frame);
 
 }  // namespace splitfusion
