@@ -132,9 +132,8 @@ void SplitFusion::TrackObjects(FrameReport* report) {
     SurfaceReport& object = objects[i];
     Track* track = splitter_.mutable_track(object.id);
     if (!IsInView(object)) {
-      object.reason =
-          std::to_string(static_cast<int>(100 * object.exposure)) +
-          " % of the model in view";
+      object.reason = std::to_string(static_cast<int>(100 * object.exposure)) +
+                      " % of the model in view";
       track->Apply(TrackEvent::kLittleInView);
     } else if (found[i] ||
                TrackWhereSeen(surfaces_.at(object.id).get(), &object)) {
@@ -160,8 +159,9 @@ std::vector<SurfaceReport> SplitFusion::LookAtObjects() const {
     object.pixels = seen == pixels.end() ? 0 : seen->second;
     const auto alone = rendering_.alone.find(id);
     if (alone != rendering_.alone.end()) {
-      object.exposure = Exposure(
-          alone->second, kAloneStride * options_.render_stride, live_, id);
+      const int step = kAloneStride * options_.render_stride;
+      object.exposure = Exposure(alone->second, step, live_, id);
+      object.explained = Explained(alone->second, step, live_, id);
     }
     objects.push_back(std::move(object));
   }
@@ -229,10 +229,11 @@ bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
     const double explained =
         Explained(RenderAlone(*surface, camera).raster.depth,
                   options_.render_stride, live_, surface->id());
-    if (explained >= options_.min_explained) return true;
-    report->reason =
-        "explains " + std::to_string(static_cast<int>(100 * explained)) +
-        " % of what is seen of it";
+    const double usual = splitter_.tracks().at(surface->id()).usual_explained;
+    if (explained >= options_.min_explained * usual) return true;
+    report->reason = "explains " +
+                     std::to_string(static_cast<int>(100 * explained)) +
+                     " % of what is seen of it";
   }
   *surface->mutable_graph() = before;
   rendering_ =
@@ -255,9 +256,9 @@ void SplitFusion::Fuse(FrameReport* report) {
 
 bool SplitFusion::InPlainView(const SurfaceReport& report) const {
   constexpr double kUsual = 0.5;
-  const double least = std::max(
-      options_.min_birth_area * camera_.width * camera_.height,
-      kUsual * splitter_.tracks().at(report.id).usual_pixels);
+  const double least =
+      std::max(options_.min_birth_area * camera_.width * camera_.height,
+               kUsual * splitter_.tracks().at(report.id).usual_pixels);
   return report.pixels >= least;
 }
 
@@ -268,6 +269,8 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     if (track.state == TrackState::kTracked) {
       const double share = track.usual_pixels > 0 ? 0.1 : 1;
       track.usual_pixels += share * (object.pixels - track.usual_pixels);
+      track.usual_explained +=
+          share * (object.explained - track.usual_explained);
     }
     Surface& surface = *surfaces_.at(object.id);
     // Joined models of one node each would share it in Eq. 3.

@@ -9,9 +9,8 @@ SolverRegistry BuiltinSolvers() {
     return MakeGaussNewton(options, MakePcgSolver);
   });
   registry.Register("gn_cholesky", [](const SolverOptions& options) {
-    return MakeGaussNewton(options, [](const SolverOptions&) {
-      return MakeCholeskySolver();
-    });
+    return MakeGaussNewton(
+        options, [](const SolverOptions&) { return MakeCholeskySolver(); });
   });
   registry.Register("ceres", MakeCeresSolver);
   return registry;

@@ -15,8 +15,8 @@ struct CgResult {
   double relative_residual = 0;  ///< |b - A x| / |b|
 };
 
-/// Preconditioner of a positive definite matrix by its name: the inverses of its
-/// diagonal blocks (jacobi, auto), or the identity.
+/// Preconditioner of a positive definite matrix by its name: the inverses of
+/// its diagonal blocks (jacobi, auto), or the identity.
 ///
 /// @throw InputError on an unknown name; lists the known ones.
 Blocks6 MakePreconditioner(const std::string& name,

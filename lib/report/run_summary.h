@@ -19,14 +19,14 @@ struct SurfaceSummary {
   std::string label;                       ///< Class name; spaces kept.
   SurfaceKind kind = SurfaceKind::kRigid;  ///< Of its last report.
   int first_frame = 0;                     ///< Frame of its birth.
-  int frames = 0;           ///< Frames in which it was born or tracked.
-  int nodes = 0;            ///< Of the final graph.
-  double node_spacing = 0;  ///< Of the final graph, metres; 0 if rigid.
-  int vertices = 0;         ///< Of the final mesh.
-  std::vector<int> lost;    ///< Frames whose solve failed.
+  int frames = 0;             ///< Frames in which it was born or tracked.
+  int nodes = 0;              ///< Of the final graph.
+  double node_spacing = 0;    ///< Of the final graph, metres; 0 if rigid.
+  int vertices = 0;           ///< Of the final mesh.
+  std::vector<int> lost;      ///< Frames whose solve failed.
   std::vector<int> occluded;  ///< Frames in which others mostly hid it.
-  /// Frames in which it was tracked again after it had been lost, occluded or out
-  /// of view.
+  /// Frames in which it was tracked again after it had been lost, occluded or
+  /// out of view.
   std::vector<int> refound;
   std::vector<int> reanchored;  ///< Frames in which its model began anew.
   /// The frame in which it was lost or occluded and after which it was not

@@ -11,50 +11,40 @@
 namespace splitfusion {
 namespace {
 
-// Log-likelihood ratios of the cues, linear between the limits that a single
-// cue may reach. Where they are zero, and how steep, comes from detections of
-// people in rendered sequences: of the same person / of another one the IoU is
-// over 0.32 / under 0.03 in 19 of 20 pairs, the similarity of colours over 0.63
-// / under 0.32 (0.47 / 0.40
-// of strips that are a tenth of him), the way between two frames under 0.26 m / over 0.53 m.
-constexpr double kEqualIou = 0.2, kIouSlope = 10;
-constexpr double kEqualColor = 0.4, kColorSlope = 15;
-constexpr double kPlaceSigma = 0.15;  // Metres, between two frames ...
-constexpr double kWay = 0.05;         // ... and more a frame: a fast walk.
-constexpr double kRoom = 2;           // Metres: others are anywhere in it.
-constexpr double kLimit = 5;          // Of one cue.
-
-/// Of the overlap of a detection that may not become a surface.
-constexpr double kUntrusted = 3;
-
-/// A share of a detection inside of a surface that makes it a piece of it.
-constexpr double kMinContained = 0.6;
-
 /// Fewer predicted and not occluded pixels than this share of a detection tell
 /// nothing of it.
 constexpr double kMinPredicted = 0.1;
 
-double Limited(double ratio) { return std::clamp(ratio, -kLimit, kLimit); }
+double Limited(double ratio, const AssignmentOptions& options) {
+  return std::clamp(ratio, -options.limit, options.limit);
+}
 
 /// Of equal independent normal deviations against a uniform place in the room.
-double PlaceRatio(double distance, int frames) {
-  const double sigma = std::min(kRoom, kPlaceSigma + kWay * frames);
+double PlaceRatio(double distance, int frames,
+                  const AssignmentOptions& options) {
+  const double sigma =
+      std::min(options.room, options.place_sigma + options.way * frames);
   const double deviation = distance / sigma;
-  return Limited(3 * std::log(kRoom / sigma) - 0.5 * deviation * deviation);
+  return Limited(
+      3 * std::log(options.room / sigma) - 0.5 * deviation * deviation,
+      options);
 }
 
 double AppearanceRatio(const Appearance& detected, const Appearance& known,
-                       int frames) {
+                       int frames, const AssignmentOptions& options) {
   if (detected.histogram.empty() || known.histogram.empty()) return 0;
-  double ratio = Limited(kColorSlope *
-                         (ColorSimilarity(detected, known) - kEqualColor));
+  const double more = ColorSimilarity(detected, known) - options.equal_color;
+  double ratio = Limited(options.color_slope * more, options);
   if (detected.placed && known.placed) {
-    ratio += PlaceRatio((detected.center - known.center).norm(), frames);
+    ratio +=
+        PlaceRatio((detected.center - known.center).norm(), frames, options);
   }
   return ratio;
 }
 
-double IouRatio(double iou) { return Limited(kIouSlope * (iou - kEqualIou)); }
+double IouRatio(double iou, const AssignmentOptions& options) {
+  return Limited(options.iou_slope * (iou - options.equal_iou), options);
+}
 
 /// Pixels that a mask has in common with one surface.
 struct CommonPixels {
@@ -112,8 +102,12 @@ double MaskIou(const cv::Mat& a, const cv::Mat& b) {
 class Comparison {
  public:
   Comparison(const Candidate& candidate, const KnownSurfaces& known,
-             const std::map<int, int>& visible)
-      : candidate_(candidate), known_(known), visible_(visible) {
+             const std::map<int, int>& visible,
+             const AssignmentOptions& options)
+      : candidate_(candidate),
+        known_(known),
+        visible_(visible),
+        options_(options) {
     common_ = CountCommon(candidate.mask, known.predicted_labels,
                           known.agreement, &detected_);
   }
@@ -127,30 +121,30 @@ class Comparison {
   double GainOf(const Track& track) const {
     const double iou = OverlapWith(track.id).iou;
     // A chair beside a person is as near to him as he is.
-    if (!candidate_.trusted) return IouRatio(iou) - kUntrusted;
+    const double overlap = IouRatio(iou, options_);
+    if (!candidate_.trusted) return overlap - options_.untrusted;
     const double gain =
         AppearanceRatio(candidate_.appearance, track.appearance,
-                        known_.frame - track.last_detected_frame);
+                        known_.frame - track.last_detected_frame, options_);
     const auto visible = visible_.find(track.id);
     const bool expected = visible != visible_.end() &&
                           visible->second > kMinPredicted * detected_;
     if (!expected) return gain;
     // Where a track that is not tracked lies is a guess.
-    return track.state == TrackState::kTracked
-               ? gain + IouRatio(iou)
-               : gain + std::max(0.0, IouRatio(iou));
+    return track.state == TrackState::kTracked ? gain + overlap
+                                               : gain + std::max(0.0, overlap);
   }
 
   double GainOf(const TentativeTrack& track) const {
-    return IouRatio(MaskIou(candidate_.mask, track.mask)) +
+    return IouRatio(MaskIou(candidate_.mask, track.mask), options_) +
            AppearanceRatio(candidate_.appearance, track.appearance,
-                           known_.frame - track.frame);
+                           known_.frame - track.frame, options_);
   }
 
   /// The surface that it is a piece of; 0 if none.
   int Whole() const {
     int whole = 0;
-    double best = kMinContained;
+    double best = options_.min_contained;
     for (const auto& [id, common] : common_) {
       if (known_.tracks.count(id) == 0) continue;
       const double contained = OverlapWith(id).contained;
@@ -165,6 +159,7 @@ class Comparison {
   const Candidate& candidate_;
   const KnownSurfaces& known_;
   const std::map<int, int>& visible_;  // Predicted pixels by id.
+  const AssignmentOptions& options_;
   std::map<int, CommonPixels> common_;
   int detected_ = 0;
 };
@@ -178,14 +173,39 @@ std::map<int, int> CountVisible(const LabelImage& labels,
   for (int v = 0; v < labels.rows; ++v) {
     for (int u = 0; u < labels.cols; ++u) {
       if (labels(v, u) != label) count = &counts[label = labels(v, u)];
-      *count += static_cast<DepthState>(agreement(v, u)) !=
-                DepthState::kOccluded;
+      *count +=
+          static_cast<DepthState>(agreement(v, u)) != DepthState::kOccluded;
     }
   }
   return counts;
 }
 
 }  // namespace
+
+void AssignmentOptions::List(OptionList* list) {
+  list->Number("equal_iou", &equal_iou, Range::Share(), "",
+               "IoU of detection and projection that tells nothing.");
+  list->Number("iou_slope", &iou_slope, Range::AtLeast(0), "",
+               "Log-likelihood ratio for a unit of IoU more.");
+  list->Number("equal_color", &equal_color, Range::Share(), "",
+               "Intersection of colour histograms that tells nothing.");
+  list->Number("color_slope", &color_slope, Range::AtLeast(0), "",
+               "Log-likelihood ratio for a unit of it more.");
+  list->Number("place_sigma", &place_sigma, Range::Above(0), "metres",
+               "Standard deviation of the place between two frames.");
+  list->Number("way", &way, Range::AtLeast(0), "metres",
+               "Added to it for every frame since the last detection.");
+  list->Number("room", &room, Range::Above(0), "metres",
+               "Extent of the room, where others are anywhere.");
+  list->Number("limit", &limit, Range::Above(0), "",
+               "Largest log-likelihood ratio of one cue.");
+  list->Number("untrusted", &untrusted, Range::AtLeast(0), "",
+               "Ratio of the overlap that a detection needs which may not "
+               "become a surface.");
+  list->Number("min_contained", &min_contained, Range::Share(), "",
+               "Share of a detection inside of a surface that makes it a piece "
+               "of it.");
+}
 
 Overlap ComputeOverlap(const cv::Mat_<uchar>& mask, int surface,
                        const LabelImage& predicted_labels,
@@ -199,7 +219,8 @@ Overlap ComputeOverlap(const cv::Mat_<uchar>& mask, int surface,
                      found->second);
 }
 
-int FindReturned(const Track& track, const TrackTable& tracks, int frame) {
+int FindReturned(const Track& track, const TrackTable& tracks, int frame,
+                 const AssignmentOptions& options) {
   int returned = 0;
   double best = 0;
   for (const auto& [id, other] : tracks) {
@@ -209,8 +230,9 @@ int FindReturned(const Track& track, const TrackTable& tracks, int frame) {
         other.appearance.pixels < track.appearance.pixels) {
       continue;
     }
-    const double ratio = AppearanceRatio(track.appearance, other.appearance,
-                                         frame - other.last_detected_frame);
+    const double ratio =
+        AppearanceRatio(track.appearance, other.appearance,
+                        frame - other.last_detected_frame, options);
     if (ratio <= best) continue;
     best = ratio;
     returned = id;
@@ -219,7 +241,8 @@ int FindReturned(const Track& track, const TrackTable& tracks, int frame) {
 }
 
 std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
-                                    const KnownSurfaces& known) {
+                                    const KnownSurfaces& known,
+                                    const AssignmentOptions& options) {
   const std::map<int, int> visible =
       CountVisible(known.predicted_labels, known.agreement);
   const int surfaces = static_cast<int>(known.tracks.size());
@@ -229,7 +252,7 @@ std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
   for (const Candidate& candidate : candidates) {
     double* gain = gains[static_cast<int>(comparisons.size())];
     const Comparison& comparison =
-        comparisons.emplace_back(candidate, known, visible);
+        comparisons.emplace_back(candidate, known, visible, options);
     for (const auto& [id, track] : known.tracks) {
       *gain++ = track.merged_into > 0 ? 0 : comparison.GainOf(track);
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/split/assignment_options.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 #include "splitfusion/lib/split/tentative_tracks.h"
 #include "splitfusion/lib/split/track_table.h"
@@ -13,14 +14,14 @@ namespace splitfusion {
 
 /// One detection, and what is known of it.
 struct Candidate {
-  cv::Mat_<uchar> mask;         ///< HxW, 255 inside.
-  std::string class_name = "";  ///< As the detector gave it.
-  double score = 1;             ///< 0..1.
+  cv::Mat_<uchar> mask;                       ///< HxW, 255 inside.
+  std::string class_name = "";                ///< As the detector gave it.
+  double score = 1;                           ///< 0..1.
   SurfaceKind kind = SurfaceKind::kNonRigid;  ///< Of its class.
   /// May become a surface; else (low score, rigid class, very large) it counts
   /// only if it is clearly of a known one.
   bool trusted = true;
-  bool moved = false;     ///< Of a rigid class, but stands where space was empty.
+  bool moved = false;  ///< Of a rigid class, but stands where space was empty.
   Appearance appearance;  ///< Of its pixels.
 };
 
@@ -49,11 +50,11 @@ Overlap ComputeOverlap(const cv::Mat_<uchar>& mask, int surface,
 
 /// What detections are compared with.
 struct KnownSurfaces {
-  const TrackTable& tracks;                     ///< All ever born.
+  const TrackTable& tracks;                      ///< All ever born.
   const std::vector<TentativeTrack>& tentative;  ///< May become surfaces.
-  const LabelImage& predicted_labels;           ///< HxW, projected surfaces.
-  const cv::Mat_<uchar>& agreement;             ///< HxW, a DepthState.
-  int frame;                                    ///< Index.
+  const LabelImage& predicted_labels;            ///< HxW, projected surfaces.
+  const cv::Mat_<uchar>& agreement;              ///< HxW, a DepthState.
+  int frame;                                     ///< Index.
 };
 
 /// Assigns every detection to at most one track and every track to at most one
@@ -64,12 +65,14 @@ struct KnownSurfaces {
 /// depth, is a piece of it. The class does not count: detectors change their
 /// mind about it.
 std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
-                                    const KnownSurfaces& known);
+                                    const KnownSurfaces& known,
+                                    const AssignmentOptions& options);
 
 /// The surface that a new one turns out to be, as more of it comes into view:
-/// one that is not tracked and was last detected before the birth of `track`, is
-/// alike in colour and place, and of which more was seen. 0 if none.
-int FindReturned(const Track& track, const TrackTable& tracks, int frame);
+/// one that is not tracked and was last detected before the birth of `track`,
+/// is alike in colour and place, and of which more was seen. 0 if none.
+int FindReturned(const Track& track, const TrackTable& tracks, int frame,
+                 const AssignmentOptions& options);
 
 }  // namespace splitfusion
 

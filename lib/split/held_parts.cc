@@ -48,7 +48,8 @@ int WholeOf(int part, const std::vector<int>& holder) {
   while (holder[part] >= 0 && seen.insert(part).second) part = holder[part];
   if (holder[part] < 0) return part;
   int first = part;
-  for (int i = holder[part]; i != part; i = holder[i]) first = std::min(first, i);
+  for (int i = holder[part]; i != part; i = holder[i])
+    first = std::min(first, i);
   return first;
 }
 

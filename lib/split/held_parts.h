@@ -17,10 +17,10 @@ struct JoinedDetections {
   std::vector<cv::Mat_<uchar>> held;     ///< Masks that were joined to another.
 };
 
-/// Joins what is held, before anything is split: a detection of a class that may
-/// be held, see MergeGroup, and that touches one that may hold it joins that
-/// one's mask; of several the one that it touches along most of its border.
-/// What holds a part may be held itself. Apart, both are what they are.
+/// Joins what is held, before anything is split: a detection of a class that
+/// may be held, see MergeGroup, and that touches one that may hold it joins
+/// that one's mask; of several the one that it touches along most of its
+/// border. What holds a part may be held itself. Apart, both are what they are.
 JoinedDetections JoinHeldParts(const std::vector<InstanceMask>& detections,
                                const std::vector<MergeGroup>& groups,
                                const PointMap& points);

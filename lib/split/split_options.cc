@@ -22,9 +22,10 @@ void SplitOptions::List(OptionList* list) {
                "Instances with fewer pixels with depth are ignored.");
   list->Number("max_missed_frames", &max_missed_frames, Range::AtLeast(0),
                "frames", "A surface is followed so long without a detection.");
-  list->Number("birth_frames", &birth_frames, Range::AtLeast(1), "frames",
-               "Detections more than half of the frames without one that make "
-               "a surface; twice as many where background was mapped for long.");
+  list->Number(
+      "birth_frames", &birth_frames, Range::AtLeast(1), "frames",
+      "Detections more than half of the frames without one that make "
+      "a surface; twice as many where background was mapped for long.");
   list->Number("confident_score", &confident_score, Range::Share(), "",
                "From this score on a detection of the first frame makes a "
                "surface at once.");
@@ -35,6 +36,7 @@ void SplitOptions::List(OptionList* list) {
                "Background so near to a surface is neither tracked nor fused.");
   list->Part("cut_", &graph_cut);
   list->Part("evidence_", &prior);
+  list->Part("assignment_", &assignment);
 }
 
 void SplitOptions::Check() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/option_list.h"
+#include "splitfusion/lib/split/assignment_options.h"
 #include "splitfusion/lib/split/graph_cut.h"
 #include "splitfusion/lib/split/merge_groups.h"
 #include "splitfusion/lib/split/surface_prior.h"
@@ -16,6 +17,7 @@ namespace splitfusion {
 struct SplitOptions {
   GraphCutOptions graph_cut;     ///< Edges of the cut.
   PriorOptions prior;            ///< Evidence for it.
+  AssignmentOptions assignment;  ///< Of detections to tracks.
   int uncertain_band = 5;        ///< Background that is left alone: pixels
                                  ///< around every surface.
   double min_score = 0.4;        ///< A detection below counts only if it covers

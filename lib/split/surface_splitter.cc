@@ -112,9 +112,8 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                                    const SurfacePrediction& prediction) {
   CheckSizes(frame, detections, prediction);
   ++frames_;
-  SurfacePrediction prior =
-      CompletePrediction(prediction, last_, Followed(tracks_),
-                         {camera_.width, camera_.height});
+  SurfacePrediction prior = CompletePrediction(
+      prediction, last_, Followed(tracks_), {camera_.width, camera_.height});
   ComparedDepth compared = CompareDepth(frame.depth, prior, options_.prior);
   SplitResult result;
   const Input input{frame, points, prior, compared};
@@ -122,13 +121,15 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
   EndHeldTracks(joined.held, groups_, &tracks_, &compared);
   std::vector<Candidate> candidates = MakeCandidates(joined.detections, input);
   cv::Mat_<uchar> unconfirmed = WatchObjects(input, &candidates);
-  std::vector<Match> matches = AssignDetections(
-      candidates, {tracks_, tentative_.all(), compared.labels, compared.agreement,
-                   frame.index});
+  std::vector<Match> matches =
+      AssignDetections(candidates,
+                       {tracks_, tentative_.all(), compared.labels,
+                        compared.agreement, frame.index},
+                       options_.assignment);
   RecognizeReturned(frame.index, &compared.labels, &matches, &result.decisions);
   TakeOutParts(groups_, candidates, tracks_, &compared, &matches);
-  std::vector<Segment> segments = MakeSegments(
-      candidates, matches, frame.index, &unconfirmed, &result.decisions);
+  std::vector<Segment> segments = MakeSegments(candidates, matches, frame.index,
+                                               &unconfirmed, &result.decisions);
   AddMissedSurfaces(&segments);
   CutSegments(input, &segments);
   const LabelImage segment_labels =
@@ -204,8 +205,9 @@ void SurfaceSplitter::RecognizeReturned(int frame, LabelImage* predicted,
   for (Match& match : *matches) {
     if (match.surface == 0 || match.piece) continue;
     Track& track = tracks_.at(match.surface);
-    const int returned =
-        track.followed() ? FindReturned(track, tracks_, frame) : 0;
+    const int returned = track.followed() ? FindReturned(track, tracks_, frame,
+                                                         options_.assignment)
+                                          : 0;
     if (returned == 0) continue;
     track.merged_into = returned;
     track.Apply(TrackEvent::kGone);

@@ -69,8 +69,8 @@ class SurfaceSplitter {
   /// Marks candidates as moved; returns what is no background therefore.
   cv::Mat_<uchar> WatchObjects(const Input& input,
                                std::vector<Candidate>* candidates);
-  /// Gives the detections and the predicted pixels of new surfaces that turn out
-  /// to be known ones to these.
+  /// Gives the detections and the predicted pixels of new surfaces that turn
+  /// out to be known ones to these.
   void RecognizeReturned(int frame, LabelImage* predicted,
                          std::vector<Match>* matches,
                          std::vector<SplitDecision>* decisions);
@@ -94,8 +94,8 @@ class SurfaceSplitter {
   LabelImage DrawLabels(const std::vector<Segment>& segments,
                         const LabelImage& segment_labels) const;
   /// What is neither of a surface nor surely background: unconfirmed, close to
-  /// a surface, one with it in front of the background, or given to a surface by a mask or
-  /// by the projection though not by the cut.
+  /// a surface, one with it in front of the background, or given to a surface
+  /// by a mask or by the projection though not by the cut.
   cv::Mat DrawUncertain(const std::vector<Segment>& segments,
                         const LabelImage& labels,
                         const cv::Mat_<uchar>& unconfirmed,

@@ -31,8 +31,8 @@ class TentativeTracks {
   /// All of them; indices hold until EndFrame().
   const std::vector<TentativeTrack>& all() const { return tracks_; }
 
-  /// Records a detection (HxW, 255 inside) of track `index`, of a new one if -1,
-  /// and returns its index. `counts`: whether it speaks for a surface.
+  /// Records a detection (HxW, 255 inside) of track `index`, of a new one if
+  /// -1, and returns its index. `counts`: whether it speaks for a surface.
   int Record(int index, int frame, const cv::Mat_<uchar>& mask,
              const Appearance& appearance, bool counts);
 

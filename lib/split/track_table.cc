@@ -13,8 +13,7 @@ void Track::Apply(TrackEvent event) {
   }
 }
 
-void Track::Detect(int frame, const std::string& detected_class,
-                   double score) {
+void Track::Detect(int frame, const std::string& detected_class, double score) {
   Apply(TrackEvent::kDetected);
   last_detected_frame = frame;
   votes[detected_class] += score;

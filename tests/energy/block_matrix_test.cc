@@ -78,8 +78,8 @@ TEST_F(BlockMatrixTest, PcgSolvesToTheToleranceAsked) {
   const std::vector<Vector6> b = RandomVector(6);
   for (const double tolerance : {1e-2, 1e-6, 1e-10}) {
     std::vector<Vector6> x;
-    const CgResult result =
-        SolveByPcg(matrix_, MakePreconditioner("jacobi", matrix_), b, tolerance, 500, &x);
+    const CgResult result = SolveByPcg(
+        matrix_, MakePreconditioner("jacobi", matrix_), b, tolerance, 500, &x);
     EXPECT_LE(result.relative_residual, tolerance);
     EXPECT_LE((dense_ * Flat(x) - Flat(b)).norm(),
               (1.001 * tolerance + 1e-12) * Flat(b).norm());
@@ -122,8 +122,9 @@ TEST_F(BlockMatrixTest, UnknownPreconditionersAreRefused) {
 
 TEST_F(BlockMatrixTest, PcgStopsAtItsIterations) {
   std::vector<Vector6> x;
-  const CgResult result = SolveByPcg(matrix_, MakePreconditioner("jacobi", matrix_),
-                                     RandomVector(6), 1e-12, 3, &x);
+  const CgResult result =
+      SolveByPcg(matrix_, MakePreconditioner("jacobi", matrix_),
+                 RandomVector(6), 1e-12, 3, &x);
   EXPECT_EQ(result.iterations, 3);
   EXPECT_GT(result.relative_residual, 1e-12);
   EXPECT_LT(result.relative_residual, 10);
@@ -133,8 +134,8 @@ TEST_F(BlockMatrixTest, OneIterationSolvesWhatIsBlockDiagonal) {
   SymmetricBlockMatrix diagonal(kNodes, {});
   for (int i = 0; i < kNodes; ++i) diagonal.Diagonal(i) = matrix_.Diagonal(i);
   std::vector<Vector6> x;
-  EXPECT_EQ(SolveByPcg(diagonal, MakePreconditioner("jacobi", diagonal), RandomVector(8),
-                       1e-9, 50, &x)
+  EXPECT_EQ(SolveByPcg(diagonal, MakePreconditioner("jacobi", diagonal),
+                       RandomVector(8), 1e-9, 50, &x)
                 .iterations,
             1);
 }
@@ -142,14 +143,16 @@ TEST_F(BlockMatrixTest, OneIterationSolvesWhatIsBlockDiagonal) {
 TEST_F(BlockMatrixTest, ZeroAndUndefinedRightSidesEndAtOnce) {
   std::vector<Vector6> x;
   std::vector<Vector6> b(kNodes, Vector6::Zero());
-  EXPECT_EQ(
-      SolveByPcg(matrix_, MakePreconditioner("jacobi", matrix_), b, 1e-6, 50, &x).iterations,
-      0);
+  EXPECT_EQ(SolveByPcg(matrix_, MakePreconditioner("jacobi", matrix_), b, 1e-6,
+                       50, &x)
+                .iterations,
+            0);
   EXPECT_EQ(Flat(x).norm(), 0);
   b[2][3] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_LE(
-      SolveByPcg(matrix_, MakePreconditioner("jacobi", matrix_), b, 1e-6, 50, &x).iterations,
-      50);
+  EXPECT_LE(SolveByPcg(matrix_, MakePreconditioner("jacobi", matrix_), b, 1e-6,
+                       50, &x)
+                .iterations,
+            50);
 }
 
 }  // namespace

@@ -190,8 +190,8 @@ TEST(Checkpoint, HiddenLostAndDormantSurfacesGoOn) {
     if (frame >= 13 && frame < 17) detections->clear();
   };
   const Record record = RunUndisturbed(story);
-  for (const std::string event :
-       {"born", "tracked", "occluded", "lost", "missed", "inactive", "revived"}) {
+  for (const std::string event : {"born", "tracked", "occluded", "lost",
+                                  "missed", "inactive", "revived"}) {
     EXPECT_EQ(record.events.count(event), 1u) << event;
   }
   ExpectResumable(story, record, 0, 2);

@@ -19,7 +19,8 @@ std::vector<std::string> KindsOf(const std::string& preset) {
   for (int i = 0; i < 2; ++i) {
     for (const SurfaceReport& surface : run.Next().surfaces) {
       if (surface.id == 0) {
-        EXPECT_NE(ToString(surface.state), "lost") << preset << ": " << surface.reason;
+        EXPECT_NE(ToString(surface.state), "lost")
+            << preset << ": " << surface.reason;
       }
     }
   }

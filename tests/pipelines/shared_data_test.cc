@@ -62,7 +62,8 @@ Outcome Process(const std::string& sequence) {
     const FrameReport report = outcome.fusion->ProcessFrame(*frame);
     for (const SurfaceReport& surface : report.surfaces) {
       outcome.lost += ToString(surface.state) == "lost";
-      outcome.tracked[surface.id] += ToString(surface.state) == "tracked";
+      outcome.tracked[surface.id] +=
+          surface.event.empty() && surface.state == TrackState::kTracked;
     }
     last_depth = frame->depth;
   }

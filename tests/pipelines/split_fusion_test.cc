@@ -27,7 +27,7 @@ const SurfaceReport* Find(const FrameReport& report, int id) {
 
 std::string StateOf(const FrameReport& report, int id) {
   const SurfaceReport* surface = Find(report, id);
-  return surface == nullptr         ? "none"
+  return surface == nullptr       ? "none"
          : surface->event.empty() ? ToString(surface->state)
                                   : surface->event;
 }
@@ -59,8 +59,10 @@ void ExpectSoundReport(const FrameReport& report) {
                          surface.mesh_seconds;
     EXPECT_LE(whole + parts, 1.001 * report.total_seconds);
     EXPECT_NE(surface.state, TrackState::kTentative);
-    EXPECT_EQ(ToString(surface.state) == "lost" && surface.reason.empty(), false);
-    EXPECT_EQ(ToString(surface.state) == "tracked" && !surface.reason.empty(), false);
+    EXPECT_EQ(ToString(surface.state) == "lost" && surface.reason.empty(),
+              false);
+    EXPECT_EQ(ToString(surface.state) == "tracked" && !surface.reason.empty(),
+              false);
     EXPECT_FALSE(surface.label.empty());
     for (const TrackingRound& round : surface.rounds) {
       EXPECT_TRUE(round.stage == "rigid" || round.stage == "non_rigid");

@@ -67,7 +67,7 @@ TEST(SummaryBuilder, FollowsSurfacesFromBirthThroughLoss) {
 }
 
 TEST(SummaryBuilder, GoesOnFromItsState) {
-  const std::vector<std::string> states = {"born",   "tracked", "lost",
+  const std::vector<std::string> states = {"born",     "tracked", "lost",
                                            "occluded", "tracked", "occluded"};
   for (std::size_t saved = 0; saved < states.size(); ++saved) {
     SummaryBuilder whole, begun, resumed;

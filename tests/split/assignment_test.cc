@@ -69,14 +69,15 @@ class AssignmentTest : public testing::Test {
     Candidate candidate;
     candidate.mask = mask;
     candidate.class_name = "person";
-    candidate.appearance = ComputeAppearance(frame_.color, points_, mask,
-                                             Rigid3d::Identity());
+    candidate.appearance =
+        ComputeAppearance(frame_.color, points_, mask, Rigid3d::Identity());
     return candidate;
   }
   std::vector<Match> Run(const std::vector<Candidate>& candidates,
                          int frame = 1) const {
-    return AssignDetections(candidates, {tracks_, tentative_.all(), labels_,
-                                         agreement_, frame});
+    return AssignDetections(
+        candidates, {tracks_, tentative_.all(), labels_, agreement_, frame},
+        {});
   }
   /// Nothing of a surface was predicted.
   void Hide(int id) { labels_.setTo(0, labels_ == id); }
@@ -203,7 +204,7 @@ class FindReturnedTest : public AssignmentTest {
   /// Who surface 3 is after a view of these pixels.
   int Seen(const cv::Mat_<uchar>& mask) {
     AddView(Of(mask).appearance, &tracks_.at(3).appearance);
-    return FindReturned(tracks_.at(3), tracks_, 41);
+    return FindReturned(tracks_.at(3), tracks_, 41, {});
   }
 };
 

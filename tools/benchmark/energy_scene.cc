@@ -230,8 +230,7 @@ MeasuredSystem::MeasuredSystem(const EnergyScene& scene)
     blocks.Evaluate(twists, /*with_jacobians=*/true);
     blocks.Assemble(&matrix, &gradient);
     damped = Damped(matrix, radius);
-    solution =
-        MakePcgSolver(options)->Solve(damped, Negative(gradient), &step);
+    solution = MakePcgSolver(options)->Solve(damped, Negative(gradient), &step);
     if (i == EnergyScene::kIterations) return;
     for (int k = 0; k < 6 * scene.graph.size(); ++k) {
       twists[k] += step[k / 6][k % 6];
