@@ -294,7 +294,7 @@ void SplitFusion::FollowTracks() {
       predictors_.erase(id);
       continue;
     }
-    found->second->set_dormant(!track.followed());
+    found->second->set_inactive(!track.followed());
     found->second->set_label(track.class_name);
   }
 }

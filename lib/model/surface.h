@@ -96,9 +96,9 @@ class Surface {
   /// Frame of its first observation.
   int first_frame() const { return first_frame_; }
   /// Out of view or missed too long: kept, but neither tracked nor drawn.
-  bool dormant() const { return dormant_; }
-  /// Sets dormant().
-  void set_dormant(bool dormant) { dormant_ = dormant; }
+  bool inactive() const { return inactive_; }
+  /// Sets inactive().
+  void set_inactive(bool inactive) { inactive_ = inactive; }
   /// Whether it is what nothing else is.
   bool is_background() const { return id_ == 0; }
   /// Drawn by ray casting, not from the mesh.
@@ -156,7 +156,7 @@ class Surface {
   std::string label_;
   SurfaceKind kind_;
   int first_frame_;
-  bool dormant_ = false;
+  bool inactive_ = false;
   SurfaceOptions options_;
   GraphOptions graph_options_;
   TsdfVolume volume_;

@@ -128,7 +128,7 @@ MeshRendering RenderMeshes(const SurfaceMap& surfaces,
                            const PinholeCamera& camera) {
   std::vector<const Surface*> drawn;
   for (const auto& [id, surface] : surfaces) {
-    if (!surface->is_ray_cast() && !surface->dormant()) {
+    if (!surface->is_ray_cast() && !surface->inactive()) {
       drawn.push_back(surface.get());
     }
   }
@@ -292,7 +292,7 @@ SceneRendering RenderScene(const SurfaceMap& surfaces,
 bool AllDrawn(const SurfaceMap& surfaces, const MeshRendering& rendering) {
   return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& entry) {
     const Surface& surface = *entry.second;
-    return surface.is_ray_cast() || surface.dormant() ||
+    return surface.is_ray_cast() || surface.inactive() ||
            rendering.first_triangle.count(surface.id()) > 0;
   });
 }

@@ -40,7 +40,7 @@ struct MeshRendering {
 MeshRendering RenderMeshes(const SurfaceMap& surfaces,
                            const PinholeCamera& camera);
 
-/// Whether every surface that is drawn from its mesh, and not dormant, is in
+/// Whether every surface that is drawn from its mesh, and not inactive, is in
 /// the rendering.
 bool AllDrawn(const SurfaceMap& surfaces, const MeshRendering& rendering);
 

@@ -486,7 +486,7 @@ TEST(ModelRendering, AloneNothingHidesASurface) {
   EXPECT_EQ(RenderMeshes(surfaces, SmallCamera()).first_triangle.count(1), 1u);
   const MeshRendering alone = RenderAlone(*surfaces.at(1), SmallCamera());
   EXPECT_NEAR(alone.raster.depth(60, 80), 1.0, 0.005);
-  surfaces.at(1)->set_dormant(true);
+  surfaces.at(1)->set_inactive(true);
   EXPECT_EQ(RenderMeshes(surfaces, SmallCamera()).first_triangle.count(1), 0u);
 }
 
