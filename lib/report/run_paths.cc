@@ -77,11 +77,11 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
 bool RunPaths::IsOfRun(const std::string& name) {
   const RunPaths here("");
   const std::array<std::string, 16> names = {
-      here.Marker(),      here.Checkpoint(), "checkpoints",
-      here.Options(),     here.Calibration(), here.Trajectory(),
-      here.Frames(),      here.Iterations(), here.Summary(),
-      here.Evaluation(),  here.HtmlReport(), here.Pictures(),
-      here.Detections(),  "solver",          "masks",
+      here.Marker(),     here.Checkpoint(),  "checkpoints",
+      here.Options(),    here.Calibration(), here.Trajectory(),
+      here.Frames(),     here.Iterations(),  here.Summary(),
+      here.Evaluation(), here.HtmlReport(),  here.Pictures(),
+      here.Detections(), "solver",           "masks",
       "surfaces"};
   return std::find(names.begin(), names.end(), name) != names.end();
 }

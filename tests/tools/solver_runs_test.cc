@@ -40,7 +40,7 @@ class SolverRuns : public SfRun {
 };
 
 TEST_F(SolverRuns, AreTheSameWhereStepsAreAsAccurate) {
-  Synthesize("--frames=8");
+  Synthesize("--frames=6");  // Then the person, of few pixels, is lost once.
   RunWith("cholesky", "--solver=gn_cholesky");
   RunWith("ceres", "--solver=ceres");
   RunWith("pcg", "--solver=gn_pcg --eta=1e-15 --linear_iterations=2000");
