@@ -122,7 +122,7 @@ void SplitFusion::TrackObjects(FrameReport* report) {
   std::vector<char> found(objects.size(), false);
   tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
     const Surface& surface = *surfaces_.at(objects[i].id);
-    if (!IsInView(objects[i]) || StateOf(surface) == TrackState::kOccluded) {
+    if (!IsInView(objects[i]) || StateOf(surface) != TrackState::kTracked) {
       return;
     }
     found[i] = TrackObject(surfaces_.at(objects[i].id).get(), &objects[i]);
@@ -222,8 +222,9 @@ bool SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
 
 bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
-  const bool was_occluded = StateOf(*surface) == TrackState::kOccluded;
-  if (!PlaceWhereSeen(surface, report) && !was_occluded) return false;
+  // Where it was predicted a tracked one has just failed.
+  const bool failed = StateOf(*surface) == TrackState::kTracked;
+  if (!PlaceWhereSeen(surface, report) && failed) return false;
   if (TrackObject(surface, report)) {
     const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
     const double explained =
