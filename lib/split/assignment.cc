@@ -120,8 +120,8 @@ class Comparison {
 
   double GainOf(const Track& track) const {
     const double iou = OverlapWith(track.id).iou;
-    // A chair beside a person is as near to him as he is.
     const double overlap = IouRatio(iou, options_);
+    // Place tells nothing of these: a chair beside a person is where he is.
     if (!candidate_.trusted) return overlap - options_.untrusted;
     const double gain =
         AppearanceRatio(candidate_.appearance, track.appearance,
@@ -181,31 +181,6 @@ std::map<int, int> CountVisible(const LabelImage& labels,
 }
 
 }  // namespace
-
-void AssignmentOptions::List(OptionList* list) {
-  list->Number("equal_iou", &equal_iou, Range::Share(), "",
-               "IoU of detection and projection that tells nothing.");
-  list->Number("iou_slope", &iou_slope, Range::AtLeast(0), "",
-               "Log-likelihood ratio for a unit of IoU more.");
-  list->Number("equal_color", &equal_color, Range::Share(), "",
-               "Intersection of colour histograms that tells nothing.");
-  list->Number("color_slope", &color_slope, Range::AtLeast(0), "",
-               "Log-likelihood ratio for a unit of it more.");
-  list->Number("place_sigma", &place_sigma, Range::Above(0), "metres",
-               "Standard deviation of the place between two frames.");
-  list->Number("way", &way, Range::AtLeast(0), "metres",
-               "Added to it for every frame since the last detection.");
-  list->Number("room", &room, Range::Above(0), "metres",
-               "Extent of the room, where others are anywhere.");
-  list->Number("limit", &limit, Range::Above(0), "",
-               "Largest log-likelihood ratio of one cue.");
-  list->Number("untrusted", &untrusted, Range::AtLeast(0), "",
-               "Ratio of the overlap that a detection needs which may not "
-               "become a surface.");
-  list->Number("min_contained", &min_contained, Range::Share(), "",
-               "Share of a detection inside of a surface that makes it a piece "
-               "of it.");
-}
 
 Overlap ComputeOverlap(const cv::Mat_<uchar>& mask, int surface,
                        const LabelImage& predicted_labels,

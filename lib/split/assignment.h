@@ -60,7 +60,7 @@ struct KnownSurfaces {
 /// Assigns every detection to at most one track and every track to at most one
 /// detection, so that the sum of the log-likelihood ratios of overlap, colour
 /// and place ("of the same surface" against "of another one") is greatest.
-/// Inactive and hidden tracks take part: of them nothing is projected, and
+/// Inactive and occluded tracks take part: where nothing of one is projected,
 /// colour and place decide. What is left and lies inside of a surface, at its
 /// depth, is a piece of it. The class does not count: detectors change their
 /// mind about it.

@@ -7,9 +7,9 @@ namespace splitfusion {
 
 /// One decision, for the report.
 struct SplitDecision {
-  /// "matched": a detection of a known surface. "merged": a piece of one, what
-  /// it holds, or a surface that turned out to be a piece. "born", "revived": a
-  /// new surface, an inactive one seen again. "missed", "inactive": a surface
+  /// "matched": a detection of a known surface. "merged": a piece of one, or
+  /// a new surface that turned out to be one that had left. "born", "revived":
+  /// a new surface, an inactive one seen again. "missed", "inactive": a surface
   /// without detection, carried or given up. "pending", "ignored": a detection
   /// that may yet become a surface, or may not.
   std::string action;

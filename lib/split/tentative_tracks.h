@@ -22,10 +22,9 @@ struct TentativeTrack {
   }
 };
 
-/// Things that may become surfaces. The evidence for each is a log-likelihood
-/// ratio in units of that of one detection; a frame without a detection takes
-/// half of it back (a detector that finds six of ten, and is wrong twice where
-/// it is right six times), and it never falls below nothing.
+/// Things that may become surfaces. The evidence for each counts its
+/// detections; a frame without one takes half of one back (a round number, not
+/// a measured rate), and what has no evidence left is forgotten.
 class TentativeTracks {
  public:
   /// All of them; indices hold until EndFrame().

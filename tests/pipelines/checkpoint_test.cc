@@ -85,7 +85,10 @@ std::string Step(const Story& story, int frame, SyntheticRun* run,
     events->insert(ToString(surface.state));
     events->insert(surface.event);
   }
-  for (const auto& split : report.decisions) events->insert(split.action);
+  for (const auto& split : report.decisions) {
+    events->insert(split.action);
+    events->insert(split.class_name);
+  }
   return TextOf(report);
 }
 
@@ -214,6 +217,8 @@ TEST(Checkpoint, WhatIsHeldGoesOn) {
     }
   };
   const Record record = RunUndisturbed(story);
+  EXPECT_EQ(record.events.count("person"), 1u);
+  EXPECT_EQ(record.events.count("handbag"), 0u);  // It is the person's.
   ExpectResumable(story, record, 0, 2);
 }
 

@@ -1,0 +1,30 @@
+#include "splitfusion/lib/split/assignment_options.h"
+
+namespace splitfusion {
+
+void AssignmentOptions::List(OptionList* list) {
+  list->Number("equal_iou", &equal_iou, Range::Share(), "",
+               "IoU of detection and projection that tells nothing.");
+  list->Number("iou_slope", &iou_slope, Range::AtLeast(0), "",
+               "Log-likelihood ratio for a unit of IoU more.");
+  list->Number("equal_color", &equal_color, Range::Share(), "",
+               "Intersection of colour histograms that tells nothing.");
+  list->Number("color_slope", &color_slope, Range::AtLeast(0), "",
+               "Log-likelihood ratio for a unit of it more.");
+  list->Number("place_sigma", &place_sigma, Range::Above(0), "metres",
+               "Standard deviation of the place between two frames.");
+  list->Number("way", &way, Range::AtLeast(0), "metres",
+               "Added to it for every frame since the last detection.");
+  list->Number("room", &room, Range::Above(0), "metres",
+               "Extent of the room, where others are anywhere.");
+  list->Number("limit", &limit, Range::Above(0), "",
+               "Largest log-likelihood ratio of one cue.");
+  list->Number("untrusted", &untrusted, Range::AtLeast(0), "",
+               "Ratio of the overlap that a detection needs which may not "
+               "become a surface.");
+  list->Number("min_contained", &min_contained, Range::Share(), "",
+               "Share of a detection inside of a surface that makes it a piece "
+               "of it.");
+}
+
+}  // namespace splitfusion
