@@ -40,9 +40,6 @@ void PipelineOptions::List(OptionList* list) {
                "With a smaller visible fraction a surface is occluded: "
                "predicted, not tracked; 0 = never.")
       .common = true;
-  list->Number("min_explained", &min_explained, Range::Share(), "",
-               "A surface is found again where its model explains this part of "
-               "the pixels that it usually does.");
   list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
                "of the image", "A surface is modelled once it covers as much.");
   list->Number("max_lost", &max_lost, Range::AtLeast(1), "frames",

@@ -42,10 +42,6 @@ struct PipelineOptions {
   /// A surface of whose model less is in view, of what other surfaces could
   /// hide, is carried on as predicted, neither tracked nor fused; 0 = never.
   double min_exposure = 0.25;
-  /// A surface that was lost or occluded is found again where its model
-  /// explains at least this part of the share of live pixels that it usually
-  /// explains.
-  double min_explained = 0.75;
   /// Fraction of the image a surface has to cover before it is modelled.
   double min_birth_area = 0.008;
   /// A surface in plain view that is lost in so many frames on end is modelled

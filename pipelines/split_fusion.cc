@@ -161,7 +161,6 @@ std::vector<SurfaceReport> SplitFusion::LookAtObjects() const {
     if (alone != rendering_.alone.end()) {
       const int step = kAloneStride * options_.render_stride;
       object.exposure = Exposure(alone->second, step, live_, id);
-      object.explained = Explained(alone->second, step, live_, id);
     }
     objects.push_back(std::move(object));
   }
@@ -225,17 +224,7 @@ bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   // Where it was predicted a tracked one has just failed.
   const bool failed = StateOf(*surface) == TrackState::kTracked;
   if (!PlaceWhereSeen(surface, report) && failed) return false;
-  if (TrackObject(surface, report)) {
-    const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
-    const double explained =
-        Explained(RenderAlone(*surface, camera).raster.depth,
-                  options_.render_stride, live_, surface->id());
-    const double usual = splitter_.tracks().at(surface->id()).usual_explained;
-    if (explained >= options_.min_explained * usual) return true;
-    report->reason = "explains " +
-                     std::to_string(static_cast<int>(100 * explained)) +
-                     " % of what is seen of it";
-  }
+  if (TrackObject(surface, report)) return true;
   *surface->mutable_graph() = before;
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
@@ -270,8 +259,6 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     if (track.state == TrackState::kTracked) {
       const double share = track.usual_pixels > 0 ? 0.1 : 1;
       track.usual_pixels += share * (object.pixels - track.usual_pixels);
-      track.usual_explained +=
-          share * (object.explained - track.usual_explained);
     }
     Surface& surface = *surfaces_.at(object.id);
     // Joined models of one node each would share it in Eq. 3.

@@ -32,7 +32,6 @@ struct SurfaceReport {
   std::string event;
   std::string reason;       ///< Why tracking failed; empty if it did not.
   double exposure = 1;      ///< Share of the model that nothing hides.
-  double explained = 0;     ///< Share of its pixels that the prediction is at.
   int pixels = 0;           ///< Live pixels with depth of this surface.
   int nodes = 0;            ///< Of the deformation graph.
   double node_spacing = 0;  ///< Of the graph, metres; 0 if it is rigid.

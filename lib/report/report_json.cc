@@ -62,7 +62,6 @@ Json ToJson(const SurfaceReport& surface) {
           {"reason", surface.reason},
           {"pixels", surface.pixels},
           {"exposure", surface.exposure},
-          {"explained", surface.explained},
           {"nodes", surface.nodes},
           {"node_spacing", surface.node_spacing},
           {"vertices", surface.vertices},

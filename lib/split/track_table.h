@@ -19,10 +19,9 @@ struct Track {
   int first_frame = 0;                        ///< Frame of its birth.
   int last_detected_frame = 0;  ///< Latest frame with a detection of it.
   TrackState state = TrackState::kTentative;  ///< Changed by Apply() alone.
-  Appearance appearance;       ///< Of the frames it was detected.
-  int lost_frames = 0;         ///< kMisfits on end.
-  double usual_pixels = 0;     ///< Running mean while it is tracked ...
-  double usual_explained = 0;  ///< ... and of what its prediction explains.
+  Appearance appearance;                ///< Of the frames it was detected.
+  int lost_frames = 0;                  ///< kMisfits on end.
+  double usual_pixels = 0;              ///< Running mean while it is tracked.
   std::map<std::string, double> votes;  ///< Sum of scores by class.
   int merged_into = 0;  ///< Surface that it turned out to be; 0 = none.
 
@@ -40,8 +39,7 @@ struct Track {
   template <typename Archive>
   void Serialize(Archive* archive) {
     (*archive)(id, class_name, kind, first_frame, last_detected_frame, state,
-               appearance, lost_frames, usual_pixels, usual_explained, votes,
-               merged_into);
+               appearance, lost_frames, usual_pixels, votes, merged_into);
   }
 };
 

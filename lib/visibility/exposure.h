@@ -12,11 +12,6 @@ namespace splitfusion {
 double Exposure(const cv::Mat_<float>& model, int step, const LiveView& live,
                 int surface);
 
-/// How much of what is seen of a surface its model explains: the share of its
-/// live pixels at which the model is as far away; 0..1, 0 if none is seen.
-double Explained(const cv::Mat_<float>& model, int step, const LiveView& live,
-                 int surface);
-
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_VISIBILITY_EXPOSURE_H_

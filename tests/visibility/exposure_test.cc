@@ -48,15 +48,5 @@ TEST_F(ExposureTest, PixelsWithoutDepthDoNotCount) {
   EXPECT_EQ(exposure(), 1);
 }
 
-TEST_F(ExposureTest, ExplainedIsWhatLiesOnTheModel) {
-  EXPECT_EQ(Explained(model_, kStep, live_, 1), 0);  // Nothing is seen.
-  Show(32, 2.05f, 1);
-  EXPECT_DOUBLE_EQ(Explained(model_, kStep, live_, 1), 1);
-  Show(64, 2.05f, 1);  // Half of it is beside the model.
-  EXPECT_DOUBLE_EQ(Explained(model_, kStep, live_, 1), 0.5);
-  Show(24, 1.8f, 1);
-  EXPECT_DOUBLE_EQ(Explained(model_, kStep, live_, 1), 0.125);
-}
-
 }  // namespace
 }  // namespace splitfusion
