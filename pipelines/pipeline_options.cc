@@ -45,6 +45,7 @@ void PipelineOptions::List(OptionList* list) {
   list->Number("max_lost", &max_lost, Range::AtLeast(1), "frames",
                "A deforming surface in plain view that is lost in so many "
                "frames on end is modelled anew, under the same id.");
+  list->Part("normal_", &point_map);
   list->Part("", &graph);
   list->Part("background_", &background);
   list->Part("object_", &object);

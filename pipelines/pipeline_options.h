@@ -20,6 +20,8 @@ struct PipelineOptions {
   SurfaceOptions background;
   /// Model of every other surface.
   SurfaceOptions object;
+  /// Normals of the live frame.
+  PointMapOptions point_map;
   /// Warp field of every surface that deforms.
   GraphOptions graph;
   /// Stages, gates and bounds of tracking.

@@ -7,10 +7,11 @@
 namespace splitfusion {
 
 PreparedFrame PrepareFrame(const PinholeCamera& camera, Frame frame,
+                           const PointMapOptions& options,
                            Segmenter* segmenter) {
   PreparedFrame prepared;
   Stopwatch stopwatch;
-  prepared.live = MakeLiveView(camera, frame.depth, frame.color);
+  prepared.live = MakeLiveView(camera, frame.depth, frame.color, options);
   prepared.read_seconds = stopwatch.Restart();
   if (segmenter != nullptr) {
     prepared.detections = segmenter->Segment(frame);

@@ -23,6 +23,7 @@ struct PreparedFrame {
 /// @throw InputError if an image does not fit the camera, and what the
 /// segmenter throws.
 PreparedFrame PrepareFrame(const PinholeCamera& camera, Frame frame,
+                           const PointMapOptions& options,
                            Segmenter* segmenter);
 
 }  // namespace splitfusion

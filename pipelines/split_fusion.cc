@@ -106,8 +106,11 @@ void SplitFusion::TrackBackground(FrameReport* report) {
           : VisibleSamples(rendering_, background, options_.render_stride);
   surface.render_seconds = stopwatch.Restart();
   const Rigid3d predicted = MeanRigidMotion(background.graph());
-  tracker_.Track(samples, live_, 0, predictors_.at(0).velocity().inverse(),
-                 background.mutable_graph(), &surface);
+  background_state_ =
+      tracker_.Track(samples, live_, 0, predictors_.at(0).velocity().inverse(),
+                     background.mutable_graph(), &surface)
+          ? TrackState::kTracked
+          : TrackState::kLost;
   // A camera motion moves every surface.
   const Rigid3d correction =
       MeanRigidMotion(background.graph()) * predicted.inverse();
@@ -122,7 +125,8 @@ void SplitFusion::TrackObjects(FrameReport* report) {
   std::vector<char> found(objects.size(), false);
   tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
     const Surface& surface = *surfaces_.at(objects[i].id);
-    if (!IsInView(objects[i]) || StateOf(surface) != TrackState::kTracked) {
+    if (!IsInView(objects[i]) ||
+        StateOf(surface.id()) != TrackState::kTracked) {
       return;
     }
     found[i] = TrackObject(surfaces_.at(objects[i].id).get(), &objects[i]);
@@ -143,7 +147,6 @@ void SplitFusion::TrackObjects(FrameReport* report) {
       track->Apply(InPlainView(object) ? TrackEvent::kMisfits
                                        : TrackEvent::kLittleInView);
     }
-    object.state = track->state;
     report->surfaces.push_back(std::move(object));
   }
 }
@@ -187,8 +190,8 @@ bool SplitFusion::EndGoneTracks() {
   return any;
 }
 
-TrackState SplitFusion::StateOf(const Surface& surface) const {
-  return splitter_.tracks().at(surface.id()).state;
+TrackState SplitFusion::StateOf(int id) const {
+  return id == 0 ? background_state_ : splitter_.tracks().at(id).state;
 }
 
 bool SplitFusion::PlaceWhereSeen(Surface* surface, SurfaceReport* report) {
@@ -222,7 +225,7 @@ bool SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
 bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
   // Where it was predicted a tracked one has just failed.
-  const bool failed = StateOf(*surface) == TrackState::kTracked;
+  const bool failed = StateOf(surface->id()) == TrackState::kTracked;
   if (!PlaceWhereSeen(surface, report) && failed) return false;
   if (TrackObject(surface, report)) return true;
   *surface->mutable_graph() = before;
@@ -234,7 +237,7 @@ bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
 void SplitFusion::Fuse(FrameReport* report) {
   std::vector<SurfaceReport>& reports = report->surfaces;
   tbb::parallel_for(std::size_t{0}, reports.size(), [&](std::size_t i) {
-    if (reports[i].state != TrackState::kTracked) return;
+    if (StateOf(reports[i].id) != TrackState::kTracked) return;
     Surface& surface = *surfaces_.at(reports[i].id);
     Stopwatch stopwatch;
     surface.Fuse(live_);
@@ -245,10 +248,9 @@ void SplitFusion::Fuse(FrameReport* report) {
 }
 
 bool SplitFusion::InPlainView(const SurfaceReport& report) const {
-  constexpr double kUsual = 0.5;
   const double least =
       std::max(options_.min_birth_area * camera_.width * camera_.height,
-               kUsual * splitter_.tracks().at(report.id).usual_pixels);
+               0.5 * splitter_.tracks().at(report.id).usual_pixels);
   return report.pixels >= least;
 }
 
@@ -267,7 +269,6 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
       continue;
     }
     track.Apply(TrackEvent::kFits);
-    object.state = track.state;
     object.event = "reanchored";
     predictors_.erase(object.id);
   }
@@ -293,9 +294,9 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
                                              OptionsOf(id), options_.graph);
     if (!surface->Initialize(live_)) return;
     surfaces_[id] = std::move(surface);
+    if (id != 0) splitter_.mutable_track(id)->Apply(TrackEvent::kFits);
     SurfaceReport born;
     born.id = id;
-    born.state = TrackState::kTracked;
     born.event = "born";
     report->surfaces.push_back(std::move(born));
   };
@@ -339,16 +340,13 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
     surface_report.nodes = surface.graph().size();
     surface_report.node_spacing = surface.graph().node_spacing;
     surface_report.vertices = static_cast<int>(surface.mesh().vertices.size());
-    const bool begins = !surface_report.event.empty();
-    const bool tracked = surface_report.state == TrackState::kTracked;
-    surface.RecordMotions(frame.index, tracked, recent_views_);
+    surface_report.state = StateOf(id);
+    surface.RecordMotions(frame.index,
+                          surface_report.state == TrackState::kTracked,
+                          recent_views_);
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
-    const bool hidden = surface_report.state == TrackState::kOccluded;
-    predictors_[id].Record(placed, Center(surface.graph()),
-                           tracked && !begins ? Placement::kTracked
-                           : hidden           ? Placement::kHidden
-                                              : Placement::kNotTracked);
+    predictors_[id].Record(placed, Center(surface.graph()), StateOf(id));
     report->render_seconds += surface_report.render_seconds;
     report->associate_seconds += surface_report.associate_seconds;
     report->solve_seconds += surface_report.solve_seconds;

@@ -42,7 +42,7 @@ class SplitFusion {
   /// another thread while the frame before is processed. Frames in order, one
   /// at a time.
   PreparedFrame Prepare(const Frame& frame) const {
-    return PrepareFrame(camera_, frame,
+    return PrepareFrame(camera_, frame, options_.point_map,
                         options_.split_scene ? segmenter_.get() : nullptr);
   }
   /// The rest of it.
@@ -89,7 +89,7 @@ class SplitFusion {
   /// Ends the tracks of surfaces that nothing hides and that are not there all
   /// the same, so that they hide nothing; whether there are any.
   bool EndGoneTracks();
-  TrackState StateOf(const Surface& surface) const;
+  TrackState StateOf(int id) const;
   /// Shifts a surface to where its live pixels are; whether such a place is
   /// found.
   bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
@@ -126,6 +126,7 @@ class SplitFusion {
   ModelMap background_map_;
   /// By surface; of the background in the camera frame, of others in world.
   std::map<int, MotionPredictor> predictors_;
+  TrackState background_state_ = TrackState::kTracked;  ///< Of this frame.
 };
 
 }  // namespace splitfusion

@@ -202,7 +202,6 @@ bool SurfaceTracker::Track(const std::vector<ModelSample>& samples,
   }
   const bool tracked =
       TrackFrom(predicted, back, samples, target, graph, report);
-  report->state = tracked ? TrackState::kTracked : TrackState::kLost;
   if (!tracked) *graph = predicted;
   return tracked;
 }

@@ -16,8 +16,8 @@ namespace splitfusion {
 
 /// Rounds (association + minimisation) at one image resolution.
 struct TrackingStage {
-  int stride = 4;  ///< Every stride-th pixel.
-  int rounds = 4;  ///< At most; ends earlier when the cost settles.
+  int stride = 1;  ///< Every stride-th pixel.
+  int rounds = 1;  ///< At most; ends earlier when the cost settles.
   /// Rejection of correspondences.
   AssociationGates gates;
 };
@@ -84,7 +84,7 @@ class SurfaceTracker {
   /// was: tracking starts there unless the prediction fits clearly better, so
   /// that a motion which the data do not determine does not carry itself on. A
   /// frame that fails leaves the graph where tracking started; the report says
-  /// why: kLost. Returns whether it succeeded.
+  /// why. Returns whether it succeeded.
   bool Track(const std::vector<ModelSample>& samples, const LiveView& live,
              std::uint16_t surface, const Rigid3d& still,
              DeformationGraph* graph, SurfaceReport* report) const;

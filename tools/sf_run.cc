@@ -20,7 +20,7 @@
 #include "run_flags.h"
 #include "sequence_flags.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/energy/blas_threads.h"
+#include "splitfusion/lib/base/thread_limit.h"
 #include "splitfusion/lib/report/disk_space.h"
 #include "splitfusion/lib/report/library_versions.h"
 #include "splitfusion/lib/report/run_folder.h"
@@ -50,6 +50,7 @@ DECLARE_string(format);
 DECLARE_string(masks);
 DECLARE_string(preset);
 DECLARE_string(sequence);
+DECLARE_int32(threads);
 
 namespace splitfusion {
 namespace {
@@ -94,7 +95,7 @@ SequenceRunOptions RunOptionsFromFlags() {
   options.write_masks = FLAGS_write_masks;
   options.checkpoint_every = FLAGS_checkpoint_every;
   options.keep_checkpoints = FLAGS_keep_checkpoints;
-  options.reads_ahead = ThreadsFromFlags() > 1;
+  options.reads_ahead = ResolveThreads(FLAGS_threads) > 1;
   options.from = {FLAGS_from, FLAGS_at};
   options.facts = {FLAGS_preset, FlagfileText(), LibraryVersions()};
   return options;
@@ -150,7 +151,7 @@ void CheckFrom(ReaderOptions reading, const FormatRegistry& formats) {
 
 /// What needs no file to be looked at.
 void CheckValues() {
-  ThreadsFromFlags();
+  ResolveThreads(FLAGS_threads);
   CheckOption(FLAGS_warped_every >= 0, "warped_every", FLAGS_warped_every,
               "a number of frames, or 0");
   CheckOption(FLAGS_pictures_every >= 0, "pictures_every", FLAGS_pictures_every,
@@ -176,8 +177,7 @@ void CheckOutput() {
 int Reconstruct(const ReaderOptions& reading, const PipelineOptions& options,
                 const Registries& registries) {
   CheckFrom(reading, registries.formats);
-  const ThreadLimit threads;
-  SetBlasThreads(1);
+  const ThreadLimit threads(FLAGS_threads);
   const auto make = [&] {
     return MakeReconstruction(reading, options, registries);
   };

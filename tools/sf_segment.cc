@@ -16,6 +16,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/peak_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/base/thread_limit.h"
 #include "splitfusion/lib/report/detection_picture.h"
 #include "splitfusion/lib/report/frame_pictures.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
@@ -27,6 +28,7 @@ DEFINE_string(output, "", "Folder of masks to write or to complete.");
 DEFINE_bool(overwrite, false, "Replace the masks in --output.");
 DEFINE_string(overlays, "", "Folder for pictures of the masks; empty = none.");
 DECLARE_string(sequence);
+DECLARE_int32(threads);
 
 namespace splitfusion {
 namespace {
@@ -168,7 +170,7 @@ int Run(const FormatRegistry& formats) {
                   fs::weakly_canonical(FLAGS_sequence),
               "output", FLAGS_output,
               "another folder than the sequence itself");
-  const ThreadLimit threads;
+  const ThreadLimit threads(FLAGS_threads);
   if (FLAGS_overwrite) ClearMaskFolder(FLAGS_output);
   Segmentation(options, formats).Execute();
   return kExitDone;

@@ -14,10 +14,10 @@ namespace splitfusion {
 
 /// When a model point and a live point are taken for the same.
 struct AssociationGates {
-  double distance = 0.10;       ///< Metres; grows with the depth noise.
-  double normal_angle = 0.52;   ///< Radians between the normals.
-  double grazing_angle = 1.31;  ///< Radians between live normal and view ray.
-  bool coarse_color = false;    ///< Compare colours at the coarse level.
+  double distance = 0;        ///< Metres; grows with the depth noise.
+  double normal_angle = 0;    ///< Radians between the normals.
+  double grazing_angle = 0;   ///< Radians between live normal and view ray.
+  bool coarse_color = false;  ///< Compare colours at the coarse level.
 };
 
 /// Result of one association.

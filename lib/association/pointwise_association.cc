@@ -77,7 +77,8 @@ PointwiseAssociator::Outcome PointwiseAssociator::Match(
   if (found != kAccepted) return found;
   const int u = pixel.u, v = pixel.v;
   out->target = ToEigen(live_.map.points(v, u));
-  const float gate = std::max(gates.distance, kPairNoise.At(out->target.z()));
+  const float gate =
+      std::max(gates.distance, DepthTolerance<float>().At(out->target.z()));
   if ((point - out->target).squaredNorm() > gate * gate) return kDistance;
   out->target_normal = ToEigen(live_.map.normals(v, u));
   out->warped_normal = warp.WarpNormal(sample.skinning, sample.normal);

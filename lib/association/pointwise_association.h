@@ -8,9 +8,6 @@
 
 namespace splitfusion {
 
-/// Distances up to so many sigma of the depth noise pass the gate.
-constexpr DepthTolerance<float> kPairNoise = {0, 3};
-
 /// An association that looks for the live pixel of every sample on its own, and
 /// then tests the pair: a derived class says which pixel.
 class PointwiseAssociator : public Associator {

@@ -14,7 +14,7 @@ class ProjectiveAssociator : public PointwiseAssociator {
 
  protected:
   Outcome Find(const Eigen::Vector3f& point, LivePixel* pixel) const override {
-    if (!(point.z() > 0.05f)) return kOutsideImage;
+    if (!(point.z() > kNearPlane)) return kOutsideImage;
     pixel->place = live_.camera.Project(point);
     const int u = pixel->u = static_cast<int>(std::lround(pixel->place.x()));
     const int v = pixel->v = static_cast<int>(std::lround(pixel->place.y()));
@@ -24,7 +24,8 @@ class ProjectiveAssociator : public PointwiseAssociator {
     const float depth = live_.depth(v, u);
     if (!(depth > 0) || live_.map.normals(v, u)[2] == 0) return kNoDepth;
     if (live_.labels(v, u) != surface_) {
-      return ClassifyDepth(depth, point.z(), kPairNoise.At(depth)) ==
+      return ClassifyDepth(depth, point.z(),
+                           DepthTolerance<float>().At(depth)) ==
                      DepthState::kOccluded
                  ? kOccluded
                  : kOtherSurface;

@@ -252,7 +252,7 @@ std::vector<std::vector<int>> ConnectAlongSurface(
       edges[order[k].second].insert(static_cast<int>(i));
     }
   }
-  constexpr int kMinimumNeighbors = 3;
+  constexpr int kMinimumNeighbors = 3;  // Maths: fewer leave a turn free.
   TieLooseNodes(nodes, kMinimumNeighbors, &edges);
   TieParts(nodes, &edges);
   std::vector<std::vector<int>> neighbors;

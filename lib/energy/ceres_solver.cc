@@ -151,7 +151,7 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
 class CeresSolver : public Solver {
  public:
   explicit CeresSolver(const SolverOptions& options) : options_(options) {
-    constexpr double kLeast = 1e-32, kLargest = 1e16;  // Of Ceres.
+    constexpr double kLeast = 1e-32, kLargest = 1e16;  // Format: of Ceres.
     CheckOption(
         options.initial_radius >= kLeast && options.initial_radius <= kLargest,
         "initial_radius", options.initial_radius,

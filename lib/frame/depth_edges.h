@@ -11,7 +11,7 @@ namespace splitfusion {
 /// or a surface seen at 79 degrees (tan = 5) gives. Metres; the focal length in
 /// pixels.
 inline float EdgeJump(float depth, int step, float focal_length) {
-  constexpr DepthTolerance<float> kNoise = {0.005f, 3};
+  constexpr DepthTolerance<float> kNoise = {0.005f};
   constexpr float kSlope = 5;
   return kNoise.At(depth) + kSlope * depth * step / focal_length;
 }

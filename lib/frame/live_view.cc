@@ -72,7 +72,7 @@ cv::Mat_<std::uint8_t> DepthEdges(const cv::Mat_<float>& depth,
 }  // namespace
 
 LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
-                      const cv::Mat& color) {
+                      const cv::Mat& color, const PointMapOptions& options) {
   if (color.type() != CV_8UC3 || color.size() != depth.size()) {
     throw InputError("colour image is " + std::to_string(color.cols) + "x" +
                      std::to_string(color.rows) + " of type " +
@@ -88,7 +88,7 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
   view.camera = camera;
   const float focal_length = static_cast<float>(camera.fx);
   view.depth = WithoutPinholes(depth, focal_length);
-  view.map = ComputePointMap(view.depth, camera);
+  view.map = ComputePointMap(view.depth, camera, options);
   view.color = color;
   cv::Mat grey;
   cv::cvtColor(color, grey, cv::COLOR_BGR2GRAY);

@@ -56,7 +56,8 @@ inline float Intensity(const cv::Vec3b& bgr) {
 /// `depth` 32FC1 metres, `color` 8UC3, both of the camera's size.
 /// @throw InputError if a type or size does not fit.
 LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
-                      const cv::Mat& color);
+                      const cv::Mat& color,
+                      const PointMapOptions& options = {});
 
 /// Number of pixels with depth of every surface id that has some.
 std::map<int, int> PixelsOfSurfaces(const LiveView& live);

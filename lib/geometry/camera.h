@@ -5,6 +5,9 @@
 
 namespace splitfusion {
 
+/// What is nearer to a camera than this is not seen, metres.
+constexpr float kNearPlane = 0.05f;
+
 /// Pinhole camera without distortion. Camera frame: x right, y down, z forward;
 /// pixel (0, 0) is the centre of the top-left pixel.
 struct PinholeCamera {

@@ -8,12 +8,15 @@
 
 namespace splitfusion {
 
+/// Depths that differ by more standard deviations differ by more than noise.
+constexpr double kNoiseSigmas = 3;
+
 /// By how much two depths may differ and be of the same surface: some metres
 /// and some standard deviations of the sensor.
 template <typename T>
 struct DepthTolerance {
-  T base;    ///< Metres.
-  T sigmas;  ///< Of DepthSigma().
+  T base = 0;               ///< Metres.
+  T sigmas = kNoiseSigmas;  ///< Of DepthSigma().
 
   /// At z-depth `depth`, metres.
   template <typename Z>

@@ -23,7 +23,7 @@ class NormalEstimator {
         cx_(static_cast<float>(camera.cx)),
         cy_(static_cast<float>(camera.cy)) {
     // Windows may reach over the border, where there is no depth.
-    const int radius = options.normal_radius;
+    const int radius = options.radius;
     cv::copyMakeBorder(
         depth, depth_, radius, radius, radius, radius + kWindowPixels,
         cv::BORDER_CONSTANT | cv::BORDER_ISOLATED, cv::Scalar(0));
@@ -36,7 +36,7 @@ class NormalEstimator {
 
   /// Normals of a row of the image; 0 where there is no depth.
   void Normals(int v, cv::Vec3f* normals) const {
-    const int radius = options_.normal_radius;
+    const int radius = options_.radius;
     for (int u = 0; u < width_; u += kWindowPixels) {
       const float* depth = depth_[v + radius] + u + radius;
       float gates[kWindowPixels];
@@ -70,7 +70,8 @@ class NormalEstimator {
   float Gate(float z) const {
     const DepthTolerance<double> edge = {options_.edge_offset,
                                          options_.edge_factor};
-    return std::min(0.9f * z, static_cast<float>(edge.At(z)));
+    constexpr float kBelow = 0.9f;  // Maths.
+    return std::min(kBelow * z, static_cast<float>(edge.At(z)));
   }
 
   const PointMapOptions& options_;
@@ -82,12 +83,17 @@ class NormalEstimator {
 
 }  // namespace
 
-void PointMapOptions::Check() const {
-  CheckOption(normal_radius >= 1 && normal_radius <= 20, "normal_radius",
-              normal_radius, "1..20 pixels");
-  CheckOption(edge_factor > 0, "edge_factor", edge_factor, "a positive number");
-  CheckOption(edge_offset >= 0, "edge_offset", edge_offset, "metres >= 0");
+void PointMapOptions::List(OptionList* list) {
+  list->Number("radius", &radius, {1, 20}, "pixels",
+               "Half width of the window that a live normal is fitted to.");
+  list->Number("edge_factor", &edge_factor, Range::Above(0), "",
+               "Depth that differs from its middle by so many times the noise "
+               "does not count.");
+  list->Number("edge_offset", &edge_offset, Range::AtLeast(0), "metres",
+               "Added to that difference.");
 }
+
+void PointMapOptions::Check() const { CheckOptions(*this); }
 
 PointMap ComputePointMap(const cv::Mat& depth, const PinholeCamera& camera,
                          const PointMapOptions& options) {

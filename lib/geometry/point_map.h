@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/geometry/camera.h"
 #include "splitfusion/lib/geometry/depth_noise.h"
 
@@ -18,14 +19,16 @@ struct PointMap {
 struct PointMapOptions {
   /// Half width of the window over which a plane is fitted, pixels. Kinect
   /// noise is correlated over about 1 pixel, so a wide window pays.
-  int normal_radius = 3;
+  int radius = 3;
   /// Neighbours whose depth differs from the centre by more than
   /// `edge_factor` x sigma(z) + `edge_offset` (metres) do not count.
   double edge_factor = 4.0;
   /// Metres, see edge_factor.
   double edge_offset = 0.004;
 
-  /// @throw InputError if a value is out of its range.
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
   void Check() const;
 };
 

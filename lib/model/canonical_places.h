@@ -37,8 +37,8 @@ struct CanonicalPlaces {
 
 /// Distances that tell one Coverage from the other, metres.
 struct CoverageLimits {
-  double mesh = 0.015;  ///< A modelled point has a vertex as near as this.
-  double reach = 0.35;  ///< Of a node.
+  double mesh = 0;   ///< A modelled point has a vertex as near as this.
+  double reach = 0;  ///< Of a node.
 };
 
 /// Finds the places of the live pixels of `surface`. `vertices` and `warped`:

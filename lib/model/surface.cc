@@ -49,7 +49,7 @@ double PlaceTolerance(const TsdfOptions& options) {
 
 /// Places of live points that belong to a surface, every fourth pixel.
 std::vector<Eigen::Vector3d> PlacesOfSurface(const CanonicalPlaces& found) {
-  constexpr int kPixelStride = 4;
+  constexpr int kPixelStride = 4;  // Speed: blocks are many pixels wide.
   std::vector<Eigen::Vector3d> places;
   for (int v = 0; v < found.points.rows; v += kPixelStride) {
     for (int u = 0; u < found.points.cols; u += kPixelStride) {
@@ -104,7 +104,7 @@ bool Surface::Initialize(const LiveView& live) {
   IntegrateRigid(observation, Rigid3d::Identity(), &volume_);
   if (!is_ray_cast()) {
     // One noisy view: anything seen once is surface.
-    mesh_ = ExtractMesh(volume_, 1e-3);
+    mesh_ = ExtractMesh(volume_, 1e-6);
     if (mesh_.triangles.empty()) return false;
   }
   PlaceGraph(live);

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "splitfusion/lib/geometry/camera.h"
+
 namespace splitfusion {
 namespace {
 
-constexpr float kNearPlane = 0.01f;  // Metres.
-constexpr int kBandHeight = 16;      // Speed: rows rendered by one task.
+constexpr int kBandHeight = 16;  // Speed: rows rendered by one task.
 
 /// A triangle in the image: corners in pixels, inverse depths.
 struct ScreenTriangle {

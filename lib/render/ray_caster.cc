@@ -105,9 +105,9 @@ class Refiner {
   /// is not there after all.
   float Refine(const Eigen::Vector3f& step, float t, float voxel_step,
                Eigen::Vector3f* gradient) const {
-    const float reach = 2.5f * voxel_step;
+    const float reach = 2 * voxel_step;
     float place = t - 0.5f * voxel_step;
-    constexpr int kRefinements = 2;
+    constexpr int kRefinements = 2;  // Maths: more change nothing.
     for (int i = 0; i < kRefinements; ++i) {
       Sample sample;
       if (!Interpolate(origin_ + place * step, &sample)) return 0;

@@ -9,7 +9,7 @@
 #include "splitfusion/lib/energy/solver_report.h"
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/split/split_decision.h"
-#include "splitfusion/lib/split/track_state.h"
+#include "splitfusion/lib/tracking/track_state.h"
 
 namespace splitfusion {
 

@@ -13,10 +13,6 @@ namespace {
 /// apart gives none.
 constexpr double kMinTouch = 0.05;
 
-/// IoU of a mask and a surface from which both are the same thing, and share of
-/// a surface that is more than a part of it.
-constexpr double kSame = 0.5;
-
 /// Nothing is predicted any more where `pixels` are.
 void ForgetPrediction(const cv::Mat& pixels, ComparedDepth* compared) {
   compared->labels.setTo(0, pixels);
@@ -87,8 +83,9 @@ void EndHeldTracks(const std::vector<cv::Mat_<uchar>>& held,
   for (auto& [id, track] : *tracks) {
     if (!track.followed() || !MayBeHeld(groups, track.class_name)) continue;
     for (const cv::Mat_<uchar>& mask : held) {
+      // The same thing, by an IoU of a half.
       if (ComputeOverlap(mask, id, compared->labels, compared->agreement).iou <
-          kSame) {
+          0.5) {
         continue;
       }
       track.Apply(TrackEvent::kGone);
@@ -110,8 +107,8 @@ void TakeOutParts(const std::vector<MergeGroup>& groups,
       }
       const cv::Mat surface = compared->labels == id;
       const cv::Mat inside = candidates[i].mask & surface;
-      if (cv::countNonZero(inside) > kSame * cv::countNonZero(surface)) {
-        continue;
+      if (2 * cv::countNonZero(inside) > cv::countNonZero(surface)) {
+        continue;  // More than a part.
       }
       ForgetPrediction(inside, compared);
       if (match.surface != id) continue;

@@ -10,8 +10,6 @@ namespace splitfusion {
 namespace {
 
 constexpr int kReach = 3;  // Pixels.
-/// Beside a slope of 45 degrees.
-constexpr DepthTolerance<float> kNoise = {0, 3};
 
 /// True if a pixel of `body` near (u, v) continues the surface there.
 bool Touches(const PointMap& points, const cv::Mat_<uchar>& body, int u,
@@ -25,7 +23,7 @@ bool Touches(const PointMap& points, const cv::Mat_<uchar>& body, int u,
       const cv::Vec3f step = points.points(j, i) - point;
       const float sideways = std::hypot(step[0], step[1]);
       if (!IsDepthJump(point[2], points.points(j, i)[2],
-                       sideways + kNoise.At(point[2]))) {
+                       sideways + DepthTolerance<float>().At(point[2]))) {
         return true;
       }
     }

@@ -13,9 +13,6 @@
 namespace splitfusion {
 namespace {
 
-/// Of the noise, beside PriorOptions' gates.
-constexpr double kGateSigmas = 3;
-
 /// Distance to the border of a mask, pixels: positive inside.
 cv::Mat_<float> SignedDistance(const cv::Mat_<uchar>& mask) {
   cv::Mat inside, outside;
@@ -144,10 +141,8 @@ ComparedDepth CompareDepth(const cv::Mat& depth,
   tbb::parallel_for(0, depth.rows, [&](int v) {
     for (int u = 0; u < depth.cols; ++u) {
       const float live = depth.at<float>(v, u);
-      const DepthTolerance<double> background = {options.background_gate,
-                                                 kGateSigmas};
-      const DepthTolerance<double> surface = {options.surface_gate,
-                                              kGateSigmas};
+      const DepthTolerance<double> background = {options.background_gate};
+      const DepthTolerance<double> surface = {options.surface_gate};
       const auto& gate = prediction.labels(v, u) > 0 ? surface : background;
       compared.agreement(v, u) = static_cast<uchar>(
           ClassifyDepth(live, prediction.depth(v, u), gate.At(live)));

@@ -12,7 +12,7 @@ namespace splitfusion {
 struct GraphCutOptions;
 
 /// Between neighbouring pixels of one surface.
-constexpr DepthTolerance<float> kSmoothDepth = {0.02f, 4};
+constexpr DepthTolerance<float> kSmoothDepth = {0.02f};
 
 /// How strongly each observation speaks for or against a surface, in units of
 /// the strongest edge of the graph cut, per pixel.

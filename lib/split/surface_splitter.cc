@@ -20,11 +20,6 @@ namespace {
 /// Share of the background that agrees with the map when the pose is right.
 constexpr double kMinFit = 0.7;
 
-/// So much more evidence a new surface needs where background was mapped, if
-/// longer than a detector misses what it knows, and one of a rigid class, of
-/// which only frames count in which it moved.
-constexpr double kMappedFactor = 2, kRigidFactor = 2.5;
-
 void CheckSize(const std::string& name, const cv::Mat& image,
                const PinholeCamera& camera) {
   if (image.cols == camera.width && image.rows == camera.height) return;
@@ -343,13 +338,12 @@ bool SurfaceSplitter::IsConfirmed(const Segment& segment,
   const cv::Mat mapped =
       pixels & (input.compared.labels == 0) &
       (input.compared.agreement == static_cast<int>(DepthState::kObserved));
-  double needed = options_.birth_frames;
-  if (!IsTrackable(table_.Kind(segment.class_name), options_)) {
-    needed *= kRigidFactor;
-  } else if (frames_ > options_.max_missed_frames &&
-             2 * cv::countNonZero(mapped) > cv::countNonZero(pixels)) {
-    needed *= kMappedFactor;
-  }
+  // Twice as much against what is known: that it is of a rigid class, or stands
+  // where background has been mapped for longer than detectors miss a thing.
+  const bool known = !IsTrackable(table_.Kind(segment.class_name), options_) ||
+                     (frames_ > options_.max_missed_frames &&
+                      2 * cv::countNonZero(mapped) > cv::countNonZero(pixels));
+  const double needed = (known ? 2 : 1) * options_.birth_frames;
   const bool at_once =
       frames_ == 1 && segment.score >= options_.confident_score;
   if (!at_once && tentative_.all()[index].evidence < needed) return false;

@@ -3,12 +3,6 @@
 #include <algorithm>
 
 namespace splitfusion {
-namespace {
-
-constexpr double kMiss = 0.5;  // Evidence that a frame without one takes back.
-
-}  // namespace
-
 int TentativeTracks::Record(int index, int frame, const cv::Mat_<uchar>& mask,
                             const Appearance& appearance, bool counts) {
   if (index < 0) {
@@ -19,13 +13,13 @@ int TentativeTracks::Record(int index, int frame, const cv::Mat_<uchar>& mask,
   track.mask = mask.clone();
   track.appearance = appearance;
   track.frame = frame;
-  track.evidence = counts ? track.evidence + 1 : track.evidence - kMiss;
+  track.evidence = counts ? track.evidence + 1 : track.evidence - 0.5;
   return index;
 }
 
 void TentativeTracks::EndFrame(int frame) {
   for (TentativeTrack& track : tracks_) {
-    if (track.frame < frame) track.evidence -= kMiss;
+    if (track.frame < frame) track.evidence -= 0.5;
   }
   tracks_.erase(std::remove_if(tracks_.begin(), tracks_.end(),
                                [](const TentativeTrack& track) {

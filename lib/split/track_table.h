@@ -7,7 +7,7 @@
 
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/split/appearance.h"
-#include "splitfusion/lib/split/track_state.h"
+#include "splitfusion/lib/tracking/track_state.h"
 
 namespace splitfusion {
 

@@ -19,7 +19,7 @@ constexpr int kMaxLayers = 5;    // Steps nearer and farther.
 constexpr float kLayer = 0.08f;  // Metres a step.
 constexpr double kMinExplained = 0.3;
 /// Between model and live.
-constexpr DepthTolerance<float> kTolerance = {0.1f, 0};
+constexpr DepthTolerance<float> kTolerance = {0.1f};
 
 /// A depth of a coarse grid.
 struct GridPoint {

@@ -31,25 +31,24 @@ Rigid3d MotionOfOneFrame(const Rigid3d& motion, const Eigen::Vector3d& center,
 }  // namespace
 
 void MotionPredictor::Record(const Rigid3d& world_from_canonical,
-                             const Eigen::Vector3d& center,
-                             Placement placement) {
+                             const Eigen::Vector3d& center, TrackState state) {
   ++frames_since_;
-  velocity_ = MotionOf(world_from_canonical, center, placement);
+  velocity_ = MotionOf(world_from_canonical, center, state);
   const bool born = !begun_;
   begun_ = true;
-  if (placement == Placement::kHidden) known_.reset();
-  hidden_frames_ = placement == Placement::kHidden ? hidden_frames_ + 1 : 0;
-  if (placement != Placement::kTracked && !born) return;
+  if (state == TrackState::kOccluded) known_.reset();
+  hidden_frames_ = state == TrackState::kOccluded ? hidden_frames_ + 1 : 0;
+  if (state != TrackState::kTracked && !born) return;
   known_ = world_from_canonical;
   frames_since_ = 0;
 }
 
 Rigid3d MotionPredictor::MotionOf(const Rigid3d& world_from_canonical,
                                   const Eigen::Vector3d& center,
-                                  Placement placement) {
-  if (placement == Placement::kHidden) return UsualStep();
+                                  TrackState state) {
+  if (state == TrackState::kOccluded) return UsualStep();
   // The jump of a surface that was carried on unseen is no velocity.
-  if (placement == Placement::kNotTracked || !known_) {
+  if (state != TrackState::kTracked || !known_) {
     return Rigid3d::Identity();
   }
   const Eigen::Vector3d before = *known_ * center;

@@ -13,8 +13,8 @@ namespace {
 
 using internal::kLeafSize;
 
-/// Every other pixel of every other row: blocks are many pixels wide.
-constexpr int kPixelStride = 2;
+/// Every other pixel of every other row.
+constexpr int kPixelStride = 2;  // Speed: blocks are many pixels wide.
 
 openvdb::Coord LeafOrigin(const Eigen::Vector3d& voxel) {
   const auto align = [](double v) {

@@ -6,7 +6,7 @@ namespace splitfusion {
 namespace {
 
 /// Of what is nearer than a model.
-constexpr DepthTolerance<float> kInFront = {0.1f, 0};
+constexpr DepthTolerance<float> kInFront = {0.1f};
 
 }  // namespace
 

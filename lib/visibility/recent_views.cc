@@ -10,7 +10,7 @@ namespace {
 
 /// How far from the live depth a point may be and lie on it, metres: three
 /// sigma of the noise, and what bends between two nodes.
-constexpr DepthTolerance<double> kTolerance = {0.02, 3};
+constexpr DepthTolerance<double> kTolerance = {0.02};
 
 /// The pixels nearest to a point that are looked at, every second one: near a
 /// silhouette it may miss the surface by a few.

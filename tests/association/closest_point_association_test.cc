@@ -27,7 +27,8 @@ class ClosestPoint : public ::testing::Test {
     sample.skinning.weights[0] = 1;
     return BuiltinAssociations()
         .Make("closest_point", live_, static_cast<std::uint16_t>(surface))
-        ->Associate({sample}, WarpField(graph_), /*stride=*/1, {});
+        ->Associate({sample}, WarpField(graph_), /*stride=*/1,
+                    {0.10, 0.52, 1.31, false});
   }
 
   const PinholeCamera camera_ = SmallCamera();

@@ -54,7 +54,7 @@ class AssociationTest : public ::testing::Test {
   LiveView live_;
   std::vector<ModelSample> samples_;
   DeformationGraph graph_ = MakeRigidGraph(Rigid3d::Identity());
-  AssociationGates gates_;
+  AssociationGates gates_ = {0.10, 0.52, 1.31, false};
 };
 
 TEST_F(AssociationTest, AModelOnTheLiveSurfaceIsAccepted) {

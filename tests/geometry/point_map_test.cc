@@ -72,7 +72,7 @@ TEST(ComputePointMap, RejectsForeignImagesAndOptions) {
   EXPECT_THROW(ComputePointMap(cv::Mat(48, 64, CV_16UC1), kCamera), InputError);
   EXPECT_THROW(ComputePointMap(cv::Mat(47, 64, CV_32FC1), kCamera), InputError);
   PointMapOptions options;
-  options.normal_radius = 0;
+  options.radius = 0;
   EXPECT_THROW(ComputePointMap(PlaneDepth({0, 0, 1}, 1), kCamera, options),
                InputError);
 }

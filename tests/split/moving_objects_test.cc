@@ -132,7 +132,7 @@ TEST_F(MovingObjectsTest, AWrongPoseMovesNothing) {
 TEST_F(MovingObjectsTest, HalfOfTheRoomIsNotAnObject) {
   for (int i = 0; i < 40; ++i) {
     LayeredScene scene(3.0, i);
-    const cv::Rect bed(i < 15 ? 160 : 20, 10, 130, 100);
+    const cv::Rect bed(i < 15 ? 160 : 5, 5, 150, 110);
     scene.Add(bed, 2.0, 1);
     std::vector<InstanceMask> detections;
     if (i >= 15) detections.push_back({scene.Truth(1), "bed", 0.9});

@@ -19,11 +19,11 @@ Rigid3d At(double x, double degrees = 0) {
 TEST(MotionPredictor, KeepsTheVelocityOfTheLastFrame) {
   MotionPredictor predictor;
   EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
-  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kTracked);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), TrackState::kTracked);
   EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
-  predictor.Record(At(0.1, 5), Eigen::Vector3d::Zero(), Placement::kTracked);
+  predictor.Record(At(0.1, 5), Eigen::Vector3d::Zero(), TrackState::kTracked);
   EXPECT_TRUE((predictor.velocity() * At(0)).isApprox(At(0.1, 5), 1e-12));
-  predictor.Record(At(0.1, 5), Eigen::Vector3d::Zero(), Placement::kNotTracked);
+  predictor.Record(At(0.1, 5), Eigen::Vector3d::Zero(), TrackState::kLost);
   EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
 }
 
@@ -32,14 +32,14 @@ TEST(MotionPredictor, CarriesHiddenSurfacesOnByTheUsualStepOfTheirCenter) {
   const Eigen::Vector3d center(0.3, 0, 0);
   double x = 0;
   for (int i = 0; i < 9; ++i) {
-    predictor.Record(At(x += 0.02), center, Placement::kTracked);
+    predictor.Record(At(x += 0.02), center, TrackState::kTracked);
   }
   // The last step before it vanishes is wrong, and so is its turn.
-  predictor.Record(At(x += 0.5, 40), center, Placement::kTracked);
+  predictor.Record(At(x += 0.5, 40), center, TrackState::kTracked);
   // It comes to rest while nothing is seen of it.
   double way = 0;
   for (int i = 0; i < 200; ++i) {
-    predictor.Record(At(x, 40), center, Placement::kHidden);
+    predictor.Record(At(x, 40), center, TrackState::kOccluded);
     EXPECT_TRUE(predictor.velocity().linear().isIdentity(1e-12));
     EXPECT_TRUE(predictor.velocity().translation().isApprox(
         Eigen::Vector3d(0.02 * std::exp(-i / 15.0), 0, 0), 1e-9));
@@ -50,31 +50,31 @@ TEST(MotionPredictor, CarriesHiddenSurfacesOnByTheUsualStepOfTheirCenter) {
 
 TEST(MotionPredictor, TheJumpOfASurfaceThatIsBackIsNoVelocity) {
   MotionPredictor predictor;
-  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kTracked);
-  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kHidden);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), TrackState::kTracked);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), TrackState::kOccluded);
   EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
-  predictor.Record(At(0.4), Eigen::Vector3d::Zero(), Placement::kTracked);
+  predictor.Record(At(0.4), Eigen::Vector3d::Zero(), TrackState::kTracked);
   EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
-  predictor.Record(At(0.41), Eigen::Vector3d::Zero(), Placement::kTracked);
+  predictor.Record(At(0.41), Eigen::Vector3d::Zero(), TrackState::kTracked);
   EXPECT_NEAR(predictor.velocity().translation().x(), 0.01, 1e-12);
   // Neither is it a usual step.
-  predictor.Record(At(0.41), Eigen::Vector3d::Zero(), Placement::kHidden);
+  predictor.Record(At(0.41), Eigen::Vector3d::Zero(), TrackState::kOccluded);
   EXPECT_NEAR(predictor.velocity().translation().x(), 0.01, 1e-12);
 }
 
 TEST(MotionPredictor, AfterLostFramesTheVelocityIsThatOfOneFrame) {
   MotionPredictor predictor;
   const Eigen::Vector3d center(0.3, 0, 0);
-  predictor.Record(At(0), center, Placement::kNotTracked);  // Born.
-  predictor.Record(At(0.1), center, Placement::kTracked);
+  predictor.Record(At(0), center, TrackState::kLost);  // Born.
+  predictor.Record(At(0.1), center, TrackState::kTracked);
   EXPECT_NEAR(predictor.velocity().translation().x(), 0.1, 1e-12);
   for (int i = 0; i < 3; ++i) {
-    predictor.Record(At(0.1), center, Placement::kNotTracked);
+    predictor.Record(At(0.1), center, TrackState::kLost);
     EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
   }
   // Four frames later it is 8 cm farther, and has turned by 20 degrees.
   const Rigid3d found = At(0.18, 20);
-  predictor.Record(found, center, Placement::kTracked);
+  predictor.Record(found, center, TrackState::kTracked);
   Rigid3d way = Rigid3d::Identity();
   for (int i = 0; i < 4; ++i) way = predictor.velocity() * way;
   EXPECT_TRUE(way.linear().isApprox((found * At(0.1).inverse()).linear()));
@@ -82,16 +82,16 @@ TEST(MotionPredictor, AfterLostFramesTheVelocityIsThatOfOneFrame) {
       predictor.velocity() * (At(0.1) * center) - At(0.1) * center;
   EXPECT_TRUE(step.isApprox((found * center - At(0.1) * center) / 4, 1e-12));
   // It is no usual step.
-  predictor.Record(found, center, Placement::kHidden);
+  predictor.Record(found, center, TrackState::kOccluded);
   EXPECT_NEAR(predictor.velocity().translation().x(), 0.1, 1e-12);
 }
 
 TEST(MotionPredictor, LostFramesAfterHiddenOnesDoNotMakeAVelocityOfTheJump) {
   MotionPredictor predictor;
-  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kTracked);
-  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kHidden);
-  predictor.Record(At(0), Eigen::Vector3d::Zero(), Placement::kNotTracked);
-  predictor.Record(At(0.6), Eigen::Vector3d::Zero(), Placement::kTracked);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), TrackState::kTracked);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), TrackState::kOccluded);
+  predictor.Record(At(0), Eigen::Vector3d::Zero(), TrackState::kLost);
+  predictor.Record(At(0.6), Eigen::Vector3d::Zero(), TrackState::kTracked);
   EXPECT_TRUE(predictor.velocity().isApprox(Rigid3d::Identity()));
 }
 

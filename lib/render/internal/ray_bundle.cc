@@ -14,6 +14,9 @@ namespace {
 
 constexpr int kRays = RayBundle::kRays;
 
+/// Rays step as far as this at least, voxels.
+constexpr float kLeastStep = 0.7f;
+
 /// Voxels that rays are in.
 struct Places {
   float x[kRays], y[kRays], z[kRays];  // Index space.
@@ -94,7 +97,8 @@ bool StepRays(const RayVolume& volume, RayBundle* rays) {
     // Distances are along the ray to within the slope: half is safe.
     const float half = 0.5f * sample.distance[r] / volume.voxel_size;
     const float free = positive & (sample.weight[r] > 0) ? half : 0.0f;
-    const float walked = t + rays->voxel_step[r] * (free < 0.7f ? 0.7f : free);
+    const float walked =
+        t + rays->voxel_step[r] * (free < kLeastStep ? kLeastStep : free);
     float leave = Lower(1e9f, ToWall(at.x[r], at.i[r], rays->step_x[r]));
     leave = Lower(leave, ToWall(at.y[r], at.j[r], rays->step_y[r]));
     leave = Lower(leave, ToWall(at.z[r], at.k[r], rays->step_z[r]));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "splitfusion/lib/geometry/camera.h"
 #include "splitfusion/lib/tsdf/internal/fill_pixels.h"
 
 namespace splitfusion {
@@ -101,8 +102,8 @@ void FusionImage::FillTiles(const DepthObservation& observation, int tile_row) {
 
 float FusionImage::Farthest(const Eigen::AlignedBox3f& box) const {
   constexpr float kDepthMargin = 1e-3f;  // Maths: metres; rounding.
-  if (!(box.max().z() > kNear)) return -kInfinity;
-  if (!(box.min().z() > kNear)) return kInfinity;
+  if (!(box.max().z() > kNearPlane)) return -kInfinity;
+  if (!(box.min().z() > kNearPlane)) return kInfinity;
   const Range u = PixelsOf(box, 0, view_.fx, view_.cx, view_.width);
   const Range v = PixelsOf(box, 1, view_.fy, view_.cy, view_.height);
   if (u.last < u.first || v.last < v.first) return -kInfinity;

@@ -81,11 +81,12 @@ std::vector<openvdb::Vec3s> MakePoints(
 
 /// Normal at a point of index space, outward.
 Eigen::Vector3f Normal(const PaddedLeaf& leaf, const openvdb::Vec3d& p) {
+  constexpr double kReach = 0.75;  // Voxels.
   Eigen::Vector3f gradient;
   for (int axis = 0; axis < 3; ++axis) {
     openvdb::Vec3d low = p, high = p;
-    low[axis] -= 0.75;
-    high[axis] += 0.75;
+    low[axis] -= kReach;
+    high[axis] += kReach;
     // At the border of what was observed, not beyond the vertex's own cell.
     if (!leaf.Observed(low)) low[axis] = std::floor(p[axis]);
     if (!leaf.Observed(high)) high[axis] = std::floor(p[axis]) + 1;

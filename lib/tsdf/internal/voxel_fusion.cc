@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "splitfusion/lib/base/vector_clones.h"
-#include "splitfusion/lib/geometry/depth_noise.h"
+#include "splitfusion/lib/geometry/camera.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/tsdf/internal/packed_color.h"
 
 namespace splitfusion {
@@ -17,10 +18,6 @@ namespace {
 /// more than where a noisy ray ended, whatever the range: a limb that moved on
 /// is gone within a few frames.
 constexpr float kFreeSpaceWeight = 3.0f;
-
-/// ... which it is for sure where it is nearer than the measured depth by the
-/// truncation and as many sigma of the depth.
-constexpr float kFreeSpaceSigmas = 3.0f;
 
 constexpr int kSide = 8;              // Voxels along a block's edge.
 constexpr int kSlab = kSide * kSide;  // Voxels with the same x.
@@ -82,8 +79,8 @@ SPLITFUSION_INLINE void LookUp(const FusionView& view, const SeenSlab& at,
     const float inverse_z = 1 / at.z[i];
     const float u = at.zu[i] * inverse_z + 0.5f;
     const float v = at.zv[i] * inverse_z + 0.5f;
-    const bool inside =
-        (at.z[i] > kNear) & (u >= 0) & (v >= 0) & (u < width) & (v < height);
+    const bool inside = (at.z[i] > kNearPlane) & (u >= 0) & (v >= 0) &
+                        (u < width) & (v < height);
     const auto column = static_cast<std::int32_t>(inside ? u : 0);
     const auto row = static_cast<std::int32_t>(inside ? v : 0);
     const std::int32_t index = row * view.width + column;
@@ -104,7 +101,7 @@ SPLITFUSION_INLINE int Compare(const FusionView& view, const SeenSlab& at,
     const float sdf = pixel.depth - at.z[i];
     const bool counts = sdf > (pixel.weight >= 0 ? -truncation : truncation);
     const bool is_free =
-        sdf > truncation + kFreeSpaceSigmas * DepthSigma(pixel.depth);
+        sdf > truncation + float(kNoiseSigmas) * DepthSigma(pixel.depth);
     // Of a pixel that only carves, within the truncation.
     const float refuted =
         sdf > -truncation ? std::min(view.refutation * pixel.weight, 0.0f) : 0;

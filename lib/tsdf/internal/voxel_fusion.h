@@ -35,9 +35,6 @@ struct FusedLeaf {
   std::int32_t* color;
 };
 
-/// What is nearer to the camera is not seen, metres.
-constexpr float kNear = 0.05f;
-
 /// No mesh asks whether a voxel has been observed more than this.
 constexpr float kFirmWeight = 8;  // Speed.
 

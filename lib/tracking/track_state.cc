@@ -1,4 +1,4 @@
-#include "splitfusion/lib/split/track_state.h"
+#include "splitfusion/lib/tracking/track_state.h"
 
 namespace splitfusion {
 

@@ -1,5 +1,5 @@
-#ifndef SPLITFUSION_LIB_SPLIT_TRACK_STATE_H_
-#define SPLITFUSION_LIB_SPLIT_TRACK_STATE_H_
+#ifndef SPLITFUSION_LIB_TRACKING_TRACK_STATE_H_
+#define SPLITFUSION_LIB_TRACKING_TRACK_STATE_H_
 
 #include <string>
 
@@ -34,4 +34,4 @@ std::string ToString(TrackState state);
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_SPLIT_TRACK_STATE_H_
+#endif  // SPLITFUSION_LIB_TRACKING_TRACK_STATE_H_
