@@ -8,8 +8,6 @@ PipelineOptions::PipelineOptions() {
   object.tsdf.voxel_size = 0.005;
   object.tsdf.truncation = 0.030;
   object.min_piece_area = 0.0025;
-  object.looks = 2;
-  object.tsdf.max_free_weight = 0.3;
 }
 
 void PipelineOptions::List(OptionList* list) {

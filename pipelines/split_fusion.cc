@@ -326,10 +326,6 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
   const std::map<int, int> pixels = PixelsOfSurfaces(live_);
   const Rigid3d world_from_camera = WorldFromCamera();
   trajectory_.push_back({frame.timestamp, world_from_camera});
-  // Only what deforms grows nodes.
-  if (options_.deform_objects || options_.deform_background) {
-    recent_views_.Add(frame.index, live_);
-  }
   for (SurfaceReport& surface_report : report->surfaces) {
     const int id = surface_report.id;
     Surface& surface = *surfaces_.at(id);
@@ -342,8 +338,7 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
     surface_report.vertices = static_cast<int>(surface.mesh().vertices.size());
     surface_report.state = StateOf(id);
     surface.RecordMotions(frame.index,
-                          surface_report.state == TrackState::kTracked,
-                          recent_views_);
+                          surface_report.state == TrackState::kTracked);
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
     predictors_[id].Record(placed, Center(surface.graph()), StateOf(id));

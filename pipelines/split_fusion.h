@@ -121,7 +121,6 @@ class SplitFusion {
   SurfaceMap surfaces_;
   Trajectory trajectory_;
   LiveView live_;
-  RecentViews recent_views_;  ///< With the frame of `live_` at the end.
   MeshRendering rendering_;
   ModelMap background_map_;
   /// By surface; of the background in the camera frame, of others in world.

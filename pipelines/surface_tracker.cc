@@ -145,8 +145,9 @@ void TrackerOptions::List(OptionList* list) {
           "Over the non-rigid rounds of a frame, anneal falls from this to "
           "1; temporal_arap has (anneal - 1) times its weight.")
       .common = true;
-  list->Number("settled", &settled, Range::AtLeast(0), "",
-               "A stage ends when the relative change of the cost is smaller.");
+  list->Number(
+      "settled", &settled, Range::AtLeast(0), "",
+      "A rigid stage ends when the relative change of the cost is smaller.");
   list->Number("min_correspondences", &min_correspondences, Range::AtLeast(6),
                "pairs", "With fewer in the last round a surface is lost.");
   list->Number("min_accepted", &min_accepted, Range::Share(), "",

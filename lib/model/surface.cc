@@ -68,10 +68,6 @@ std::vector<Eigen::Vector3d> PlacesOfSurface(const CanonicalPlaces& found) {
 
 void SurfaceOptions::List(OptionList* list) {
   list->Part("", &tsdf);
-  list->Number(
-      "looks", &looks, Range::AtLeast(1), "frames",
-      "A new part of a deforming surface is meshed once it was seen in "
-      "so many; in more where space was found empty before.");
   list->Number("min_piece", &min_piece_area, Range::AtLeast(0), "square metres",
                "Smaller connected pieces of the final mesh are left out.");
   list->Number("mesh_weight", &min_mesh_weight,
@@ -161,15 +157,6 @@ void Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
       live, id_, graph_, mesh_.vertices, WarpedVertices(),
       {kModelledVoxels * options_.tsdf.voxel_size, options_.growth_reach});
   AllocateAround(PlacesOfSurface(found), options_.tsdf.truncation, &volume_);
-  if (options_.looks > 1) {
-    // So many of these weigh as much as a mesh asks for.
-    cv::Mat_<float> cautious;
-    cv::min(live.confidence, options_.min_mesh_weight / options_.looks,
-            cautious);
-    observation->weight = live.confidence.clone();
-    cautious.copyTo(observation->weight,
-                    found.coverage > static_cast<int>(Coverage::kModelled));
-  }
   observation->places = found.points;
   observation->place_tolerance = PlaceTolerance(options_.tsdf);
   integrator_.Integrate(*observation, *index_, WarpField(graph_),
@@ -202,12 +189,9 @@ void Surface::GrowOverMesh() {
   mesh_skinning_.FollowGraph(*index_, mesh_.vertices, change);
 }
 
-void Surface::RecordMotions(int frame, bool tracked, const RecentViews& views) {
+void Surface::RecordMotions(int frame, bool tracked) {
   history_.frames.push_back({frame, tracked, graph_.motions});
-  while (static_cast<int>(graph_.first_seen.size()) < graph_.size()) {
-    graph_.first_seen.push_back(
-        FirstSeen(static_cast<int>(graph_.first_seen.size()), views));
-  }
+  graph_.first_seen.resize(graph_.size(), frame);
   if (kind_ == SurfaceKind::kRigid) return;
   UpdateLastSeen();
   KeepSeenEdges(history_, last_seen_, &graph_);
@@ -220,21 +204,6 @@ void Surface::UpdateLastSeen() {
   for (std::size_t i = 0; i < graph_.seen.size(); ++i) {
     if (graph_.seen[i] >= 1) last_seen_[i] = now;
   }
-}
-
-int Surface::FirstSeen(int node, const RecentViews& views) const {
-  int first = history_.frames.back().frame;
-  for (auto motions = history_.frames.rbegin();
-       motions != history_.frames.rend(); ++motions) {
-    const std::optional<Sighting> sighting =
-        views.Look(motions->frame, id_,
-                   graph_.positions[node] + motions->motions[node].translation);
-    if (!sighting) break;
-    if (!motions->tracked) continue;  // Its place is not known.
-    if (*sighting == Sighting::kFreeSpace) break;
-    if (*sighting == Sighting::kSeen) first = motions->frame;
-  }
-  return first;
 }
 
 std::vector<Eigen::Vector3f> Surface::WarpedVertices() const {

@@ -17,7 +17,6 @@
 #include "splitfusion/lib/tsdf/mesh_extractor.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
 #include "splitfusion/lib/tsdf/warped_integration.h"
-#include "splitfusion/lib/visibility/recent_views.h"
 
 namespace splitfusion {
 
@@ -28,11 +27,6 @@ struct SurfaceOptions {
   /// Observations a voxel needs before it is meshed (weights, about frames at
   /// close range); at most MeshExtractor::kMaxMinWeight.
   double min_mesh_weight = 0.05;
-  /// What the mesh of a non-rigid surface does not cover yet is meshed once
-  /// seen in so many frames, and where it had been carved in several times as
-  /// many: a limb that tracking could not follow does not become model twice.
-  /// 1: at once.
-  double looks = 1;
   /// Pieces of the final mesh smaller than this are left out, square metres:
   /// noise, and remains of what moved on.
   double min_piece_area = 0.01;
@@ -77,10 +71,9 @@ class Surface {
   /// Extracts the final canonical mesh, without small pieces.
   void FinishMesh();
 
-  /// Appends the current motions to the history. `views`, with this frame the
-  /// last one, tell since when the nodes that are new in it have been in view;
-  /// the graph is told how its edges were last seen.
-  void RecordMotions(int frame, bool tracked, const RecentViews& views);
+  /// Appends the current motions to the history. Nodes that are new are seen
+  /// from this frame on; the graph is told how its edges were last seen.
+  void RecordMotions(int frame, bool tracked);
 
   /// Mesh vertices under the current motions, camera frame.
   std::vector<Eigen::Vector3f> WarpedVertices() const;
@@ -143,9 +136,6 @@ class Surface {
   void PlaceGraph(const LiveView& live);
   void FuseWarped(const LiveView& live, DepthObservation* observation);
   void GrowOverMesh();
-  /// Goes back from the last recorded frame as far as the node is not seen to
-  /// be elsewhere.
-  int FirstSeen(int node, const RecentViews& views) const;
   /// Notes which nodes the last recorded frame showed: none if it was not
   /// tracked, but new ones in any case.
   void UpdateLastSeen();

@@ -22,15 +22,16 @@ void SplitOptions::List(OptionList* list) {
                "Instances with fewer pixels with depth are ignored.");
   list->Number("max_missed_frames", &max_missed_frames, Range::AtLeast(0),
                "frames", "A surface is followed so long without a detection.");
-  list->Number(
-      "birth_frames", &birth_frames, Range::AtLeast(1), "frames",
-      "Detections more than half of the frames without one that make "
-      "a surface; twice as many where background was mapped for long.");
+  list->Number("birth_frames", &birth_frames, Range::AtLeast(1), "frames",
+               "Detections more than half of the frames without one that make "
+               "a surface; twice as many where background was mapped for long, "
+               "or of a rigid class.");
   list->Number("confident_score", &confident_score, Range::Share(), "",
                "From this score on a detection of the first frame makes a "
                "surface at once.");
   list->Number("min_contact", &min_contact, {0, 1, true}, "",
-               "A new detection is a part of a surface that it touches along "
+               "A new detection is a part of a surface of its class that it "
+               "touches along "
                "this share of its border.");
   list->Number("uncertain_band", &uncertain_band, {0, 100}, "pixels",
                "Background so near to a surface is neither tracked nor fused.");

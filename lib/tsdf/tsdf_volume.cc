@@ -136,9 +136,6 @@ void TsdfOptions::List(OptionList* list) {
                    NumberText(50 * voxel_size) + " metres)");
   list->Number("max_weight", &max_weight, Range::AtLeast(1), "",
                "Largest weight of a voxel in the running mean.");
-  list->Number("free_weight", &max_free_weight, Range::Above(0), "",
-               "Largest weight of a voxel found empty; the smaller, the sooner "
-               "what comes back there is modelled.");
 }
 
 void TsdfOptions::Check() const { CheckOptions(*this); }

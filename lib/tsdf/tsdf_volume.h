@@ -21,9 +21,6 @@ struct TsdfOptions {
   double voxel_size = 0.01;  ///< Metres.
   double truncation = 0.04;  ///< Metres; at least 2 voxels.
   double max_weight = 64;    ///< Cap of the running mean's weight.
-  /// The same where space was found empty: how long something that comes back
-  /// takes to be believed.
-  double max_free_weight = 64;
   /// False: distances alone. Takes two thirds of the memory; meshes are black.
   bool has_color = true;
 

@@ -71,13 +71,13 @@ TEST(Surface, AnObjectIsMeshedAndCoveredWithNodes) {
 TEST(Surface, GrowsOverWhatComesIntoView) {
   Surface box = MakeBox(SurfaceKind::kNonRigid);
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true, {});
+  box.RecordMotions(4, true);
   const int nodes = box.graph().size();
   const std::size_t vertices = box.mesh().vertices.size();
   for (int frame = 5; frame < 9; ++frame) {
     box.Fuse(ViewWithBox(kWhole));
     box.UpdateMesh();
-    box.RecordMotions(frame, true, {});
+    box.RecordMotions(frame, true);
   }
   EXPECT_GT(box.graph().size(), 1.5 * nodes);
   EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
@@ -89,7 +89,7 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
 TEST(Surface, BeginsAnewUnderItsIdAndKeepsWhatItWas) {
   Surface box = MakeBox(SurfaceKind::kNonRigid);
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true, {});
+  box.RecordMotions(4, true);
   const std::size_t vertices = box.mesh().vertices.size();
   const int nodes = box.graph().size();
   LiveView empty = ViewWithBox(kHalf);
@@ -101,7 +101,7 @@ TEST(Surface, BeginsAnewUnderItsIdAndKeepsWhatItWas) {
   EXPECT_EQ(box.first_frame(), 4);
   EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
   EXPECT_TRUE(box.history().frames.empty());
-  box.RecordMotions(5, true, {});
+  box.RecordMotions(5, true);
   box.FinishMesh();
   const SurfaceModel model = box.Model();
   ASSERT_EQ(model.graph.models.size(), 2u);
@@ -118,34 +118,12 @@ TEST(Surface, AGraphOfFewNodesNeedsNoMoreBlocks) {
     graph.max_nodes = max_nodes;
     Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions(), graph);
     ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-    box.RecordMotions(4, true, {});
+    box.RecordMotions(4, true);
     box.Fuse(ViewWithBox(kWhole));
     box.UpdateMesh();
     blocks.push_back(box.volume().leaf_count());
   }
   EXPECT_LE(blocks[1], blocks[0]);
-}
-
-TEST(Surface, WhatIsNewIsMeshedOnceSeenSeveralTimes) {
-  SurfaceOptions options;
-  options.looks = 4;
-  Surface box(1, "box", SurfaceKind::kNonRigid, 4, options);
-  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  const auto rightmost = [&] {
-    float x = -1;
-    for (const auto& v : box.mesh().vertices) x = std::max(x, v.x());
-    return x;
-  };
-  const float before = rightmost();
-  for (int frame = 5; frame < 10; ++frame) {
-    box.Fuse(ViewWithBox(kWhole));
-    box.UpdateMesh();
-    // A margin of three voxels is on the mesh already.
-    if (frame < 8) {
-      EXPECT_LT(rightmost(), before + 0.1) << frame;
-    }
-  }
-  EXPECT_GT(rightmost(), before + 0.2);
 }
 
 TEST(Surface, PartsAstrayDoNotCopyWhatIsModelledElsewhere) {
@@ -168,7 +146,7 @@ TEST(Surface, PartsAstrayDoNotCopyWhatIsModelledElsewhere) {
   for (int frame = 5; frame < 15; ++frame) {
     box.Fuse(ViewWithBox(kWhole));
     box.UpdateMesh();
-    box.RecordMotions(frame, true, {});
+    box.RecordMotions(frame, true);
   }
   EXPECT_LT(right_end(), before + 0.02);
 }
@@ -192,10 +170,10 @@ TEST(Surface, IsWrittenWithConstantVertexOrder) {
   const TemporaryFolder folder;
   Surface box = MakeBox(SurfaceKind::kNonRigid);
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true, {});
+  box.RecordMotions(4, true);
   ApplyRigidMotion(MakeMotion({0, 0, 0}, {0.5, 0, 0}), box.mutable_graph());
-  box.RecordMotions(5, true, {});
-  box.RecordMotions(6, false, {});
+  box.RecordMotions(5, true);
+  box.RecordMotions(6, false);
   WriteSurface(RunPaths(folder.Make("run")), box,
                {/*every=*/2, /*whole=*/false});
   const std::string at = "run/surfaces/001_teddy_bear/";
@@ -219,11 +197,11 @@ TEST(Surface, WarpedMeshesHoldWhatWasSeenByThen) {
   const TemporaryFolder folder;
   Surface box = MakeBox(SurfaceKind::kNonRigid);
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true, {});
+  box.RecordMotions(4, true);
   for (int frame = 5; frame < 10; ++frame) {
     box.Fuse(ViewWithBox(kWhole));
     box.UpdateMesh();
-    box.RecordMotions(frame, true, {});
+    box.RecordMotions(frame, true);
   }
   box.FinishMesh();
   EXPECT_EQ(box.graph().first_seen.front(), 4);
@@ -245,30 +223,20 @@ TEST(Surface, WarpedMeshesHoldWhatWasSeenByThen) {
   EXPECT_EQ(warped(true, "000004").triangles.size(), all);
 }
 
-TEST(Surface, GoesBackToWhenANewPartWasFirstSeen) {
-  SurfaceOptions options;
-  options.looks = 4;  // The right half is model only after some frames.
-  Surface box(1, "box", SurfaceKind::kNonRigid, 4, options);
+TEST(Surface, NewNodesAreSeenFromTheirFrameOn) {
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  RecentViews views;
-  views.Add(4, ViewWithBox(kHalf));
-  box.RecordMotions(4, true, views);
+  box.RecordMotions(4, true);
   const int nodes = box.graph().size();
-  int born = 0;
-  for (int frame = 5; frame < 12; ++frame) {
-    box.Fuse(ViewWithBox(kWhole));
-    box.UpdateMesh();
-    views.Add(frame, ViewWithBox(kWhole));
-    if (born == 0 && box.graph().size() > 1.5 * nodes) born = frame;
-    box.RecordMotions(frame, true, views);
-  }
-  ASSERT_GT(born, 6);
+  box.Fuse(ViewWithBox(kWhole));
+  box.UpdateMesh();
+  box.RecordMotions(7, true);
   const std::vector<int>& first_seen = box.graph().first_seen;
-  // In frame 4 there was the wall, farther away, but beside the left half.
-  const auto in_5 = std::count(first_seen.begin() + nodes, first_seen.end(), 5);
-  const auto in_4 = std::count(first_seen.begin() + nodes, first_seen.end(), 4);
-  EXPECT_EQ(in_4 + in_5, static_cast<int>(first_seen.size()) - nodes);
-  EXPECT_GT(in_5, 2 * in_4);
+  ASSERT_GT(box.graph().size(), 1.5 * nodes);
+  ASSERT_EQ(static_cast<int>(first_seen.size()), box.graph().size());
+  EXPECT_EQ(std::count(first_seen.begin(), first_seen.end(), 4), nodes);
+  EXPECT_EQ(std::count(first_seen.begin(), first_seen.end(), 7),
+            box.graph().size() - nodes);
 }
 
 TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
@@ -279,7 +247,7 @@ TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
     graph->motions.assign(graph->size(), NodeMotion());
     Shake(0.005, /*seed=*/frame, graph);
     graph->seen.assign(graph->size(), seen);
-    box.RecordMotions(frame, tracked, RecentViews());
+    box.RecordMotions(frame, tracked);
     return graph->seen_edges;
   };
   const auto seen = record(5, 1, true);
@@ -297,7 +265,7 @@ TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
 TEST(Surface, KnowsSeenEdgesOfNewNodes) {
   Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true, RecentViews());
+  box.RecordMotions(4, true);
   const int nodes = box.graph().size();
   box.mutable_graph()->seen.assign(nodes, 0);
   for (int i = 0; i < 6; ++i) {
@@ -306,112 +274,12 @@ TEST(Surface, KnowsSeenEdgesOfNewNodes) {
   }
   ASSERT_GT(box.graph().size(), 1.5 * nodes);
   EXPECT_TRUE(box.graph().seen_edges.empty()) << "of other edges";
-  box.RecordMotions(5, true, RecentViews());
+  box.RecordMotions(5, true);
   ASSERT_EQ(box.graph().seen_edges.size(), box.graph().neighbors.size());
   for (int i = 0; i < box.graph().size(); ++i) {
     EXPECT_EQ(box.graph().seen_edges[i].size(),
               box.graph().neighbors[i].size());
   }
-}
-
-/// How nodes that are new in frame 9 fare that were in view before: the whole
-/// box is model in frame 9, of which frame 4 showed the left half.
-class FirstSight : public ::testing::Test {
- protected:
-  FirstSight() : box_(5, "box", SurfaceKind::kNonRigid, 4, Slow()) {
-    EXPECT_TRUE(box_.Initialize(Show(kHalf, 0)));
-    Add(4, Show(kHalf, 0));
-  }
-
-  /// The box is slow to be modelled: by nothing but many looks.
-  static SurfaceOptions Slow() {
-    SurfaceOptions options;
-    options.looks = 4;
-    return options;
-  }
-
-  /// The box moved to the right by some pixels; surface 5.
-  static LiveView Show(cv::Rect area, int right) {
-    area.x += right;
-    LiveView live = ViewWithBox(area);
-    live.labels.setTo(5, live.labels == 1);
-    return live;
-  }
-
-  /// Metres that the box moves by a pixel.
-  static double Step() { return 1.0 / SmallCamera().fx; }
-
-  void MoveTo(int right) {
-    for (NodeMotion& motion : box_.mutable_graph()->motions) {
-      motion.translation = {right * Step(), 0, 0};
-    }
-  }
-
-  void Add(int frame, const LiveView& live, bool tracked = true) {
-    views_.Add(frame, live);
-    box_.RecordMotions(frame, tracked, views_);
-  }
-
-  /// Models the whole box, in frame 9, where it stands.
-  void GrowIn9(int right) {
-    const int nodes = box_.graph().size();
-    MoveTo(right);
-    for (int i = 0; i < 6; ++i) {
-      box_.Fuse(Show(kWhole, right));
-      box_.UpdateMesh();
-    }
-    ASSERT_GT(box_.graph().size(), 1.5 * nodes);
-    Add(9, Show(kWhole, right));
-  }
-
-  /// Of the nodes at the right end, which frame 4 shows in free space.
-  std::set<int> FirstSeen() const {
-    std::set<int> frames;
-    for (int i = 0; i < box_.graph().size(); ++i) {
-      if (box_.graph().positions[i].x() > 0.1) {
-        frames.insert(box_.graph().first_seen[i]);
-      }
-    }
-    return frames;
-  }
-
-  Surface box_;
-  RecentViews views_;
-};
-
-TEST_F(FirstSight, FollowsTheMotionOfEveryFrame) {
-  for (int frame = 5; frame < 9; ++frame) {
-    MoveTo(6 * (frame - 4));
-    Add(frame, Show(kWhole, 6 * (frame - 4)));
-  }
-  GrowIn9(30);
-  EXPECT_EQ(FirstSeen(), std::set<int>({5}));
-}
-
-TEST_F(FirstSight, LooksPastFramesThatHideIt) {
-  LiveView hidden = Show(kWhole, 0);
-  hidden.depth(kWhole).setTo(0.7f);
-  hidden.labels(kWhole).setTo(2);
-  Add(6, Show(kWhole, 0));
-  Add(7, hidden);
-  Add(8, hidden);
-  GrowIn9(0);
-  EXPECT_EQ(FirstSeen(), std::set<int>({6}));
-}
-
-TEST_F(FirstSight, EndsWhereThereIsFreeSpace) {
-  Add(5, Show(kWhole, 0));
-  Add(6, Show(kHalf, 0));
-  Add(7, Show(kWhole, 0));
-  GrowIn9(0);
-  EXPECT_EQ(FirstSeen(), std::set<int>({7}));
-}
-
-TEST_F(FirstSight, LooksPastFramesInWhichTheSurfaceWasNotTracked) {
-  Add(6, Show(kWhole, 0));
-  Add(7, Show(kHalf, 0), /*tracked=*/false);
-  GrowIn9(0);
-  EXPECT_EQ(FirstSeen(), std::set<int>({6}));
 }
 
 /// Background and box as a scene.
@@ -527,9 +395,6 @@ TEST(SurfaceOptions, RefuseValuesOutOfRange) {
                    "mesh_weight = 8.5: expected 0..8, not 0");
   options.min_mesh_weight = MeshExtractor::kMaxMinWeight;
   options.Check();
-  options = SurfaceOptions();
-  options.looks = 0.5;
-  ExpectInputError([&] { options.Check(); }, "looks = 0.5");
   options = SurfaceOptions();
   options.tsdf.truncation = 0;
   ExpectInputError([&] { options.Check(); }, "truncation = 0");

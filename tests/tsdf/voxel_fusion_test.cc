@@ -146,7 +146,7 @@ bool UpdateVoxel(const DepthObservation& seen, const float dither[],
     return is_certain;
   }
   const bool empty = sdf > free_from;
-  const double confidence = empty ? 3 : seen.weight(v, u);
+  const double confidence = empty ? 1 : seen.weight(v, u);
   const double sum = block->weight[i] + confidence;
   if (!(sum > 0)) return is_certain;
   const double blend = confidence / sum;
@@ -157,10 +157,8 @@ bool UpdateVoxel(const DepthObservation& seen, const float dither[],
     block->color[i] = Blend(block->color[i], seen.color.at<cv::Vec3b>(v, u),
                             blend, dither[i % 8], &is_certain);
   }
-  const bool emptied = empty && distance > 0.9 * truncation;
-  block->weight[i] = static_cast<float>(
-      std::min(sum, emptied ? kOptions.max_free_weight : kOptions.max_weight));
-  return is_certain && !(empty && IsClose(distance, 0.9 * truncation, kMargin));
+  block->weight[i] = static_cast<float>(std::min(sum, kOptions.max_weight));
+  return is_certain;
 }
 
 /// Expects that voxels agree but for rounding.

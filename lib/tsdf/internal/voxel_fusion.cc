@@ -14,11 +14,6 @@ namespace splitfusion {
 namespace internal {
 namespace {
 
-/// A voxel that is clearly in front of what was measured is empty. That counts
-/// more than where a noisy ray ended, whatever the range: a limb that moved on
-/// is gone within a few frames.
-constexpr float kFreeSpaceWeight = 3.0f;
-
 constexpr int kSide = 8;              // Voxels along a block's edge.
 constexpr int kSlab = kSide * kSide;  // Voxels with the same x.
 
@@ -38,7 +33,6 @@ struct SlabPixels {
 struct SlabUpdate {
   float sdf[kSlab];         // Metres, positive in front.
   float confidence[kSlab];  // 0: nothing; negative: taken from the weight.
-  std::int32_t is_free[kSlab];
   float
       color_blend[kSlab];  // Weight of the pixel's colour, the rest the old's.
 };
@@ -100,6 +94,8 @@ SPLITFUSION_INLINE int Compare(const FusionView& view, const SeenSlab& at,
     const FusionPixel pixel = seen.pixel[i];
     const float sdf = pixel.depth - at.z[i];
     const bool counts = sdf > (pixel.weight >= 0 ? -truncation : truncation);
+    // That it is empty in front of what was measured, by more than noise, is
+    // certain at any range, other than where a noisy ray ended.
     const bool is_free =
         sdf > truncation + float(kNoiseSigmas) * DepthSigma(pixel.depth);
     // Of a pixel that only carves, within the truncation.
@@ -107,8 +103,7 @@ SPLITFUSION_INLINE int Compare(const FusionView& view, const SeenSlab& at,
         sdf > -truncation ? std::min(view.refutation * pixel.weight, 0.0f) : 0;
     const float confidence = counts ? std::fabs(pixel.weight) : refuted;
     update->sdf[i] = sdf;
-    update->is_free[i] = is_free;
-    update->confidence[i] = is_free ? kFreeSpaceWeight : confidence;
+    update->confidence[i] = is_free ? 1 : confidence;
     changes |= update->confidence[i] != 0;
   }
   return changes;
@@ -133,9 +128,7 @@ SPLITFUSION_INLINE int BlendDistances(const FusionView& view,
     const bool forgotten = (confidence < 0) & (sum <= 0);
     const float mean =
         forgotten ? truncation : distance + blend * (seen - distance);
-    const bool emptied = (update->is_free[i] != 0) & (mean > 0.9f * truncation);
-    const float capped =
-        std::min(sum, emptied ? view.max_free_weight : view.max_weight);
+    const float capped = std::min(sum, view.max_weight);
     const bool is_soft = std::min(capped, weight) < kFirmWeight;
     changed |= (mean != distance) | (is_soft & (capped != weight));
     distances[i] = mean;

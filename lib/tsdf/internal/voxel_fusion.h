@@ -24,7 +24,7 @@ struct FusionView {
   float dither[8];
   float truncation;  ///< Metres.
   float refutation;  ///< Of the weight of pixels that only carve, 0 or 1.
-  float max_weight, max_free_weight;
+  float max_weight;
 };
 
 /// Buffers of the block that is fused into; `color`: packed, of every voxel;
