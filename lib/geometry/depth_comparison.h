@@ -25,6 +25,9 @@ struct DepthTolerance {
   }
 };
 
+/// Depths within it may be of one body; beyond, something else is there.
+constexpr DepthTolerance<float> kOneBody = {0.1f};
+
 /// What the live depth of a pixel says about a model point that is seen there.
 enum class DepthState : std::uint8_t {
   kUnmeasured = 0,  ///< Nothing: there is no live depth, or no model.

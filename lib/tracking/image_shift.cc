@@ -1,10 +1,8 @@
 #include "splitfusion/lib/tracking/image_shift.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "splitfusion/lib/geometry/depth_comparison.h"
@@ -12,106 +10,69 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kColumns = 80;     // Of the grid that is searched.
-constexpr int kMaxColumns = 40;  // Steps to either side.
-constexpr int kMaxRows = 12;     // Steps up and down.
-constexpr int kMaxLayers = 5;    // Steps nearer and farther.
-constexpr float kLayer = 0.08f;  // Metres a step.
+constexpr int kColumns = 80;  // Speed: of the grid that is searched.
+/// Farther from or nearer to the camera by more, metres, a surface would look
+/// larger or smaller.
+constexpr float kMaxDepthChange = 0.4f;
 constexpr double kMinExplained = 0.3;
-/// Between model and live.
-constexpr DepthTolerance<float> kTolerance = {0.1f};
 
-/// A depth of a coarse grid.
-struct GridPoint {
-  int u = 0, v = 0;
-  float depth = 0;
-};
-
-/// A candidate and what it is worth.
-struct Shift {
-  int du = 0, dv = 0, layer = 0;
-  int hits = 0;
-  double score = -1e9;
-};
-
-/// Every step-th pixel of `depth`, 0 where `keep` is false.
-template <typename Keep>
-cv::Mat_<float> Coarse(const cv::Mat_<float>& depth, int step,
-                       const Keep& keep) {
-  cv::Mat_<float> coarse((depth.rows + step - 1) / step,
-                         (depth.cols + step - 1) / step);
-  for (int v = 0; v < coarse.rows; ++v) {
-    for (int u = 0; u < coarse.cols; ++u) {
-      const bool kept = keep(v * step, u * step);
-      coarse(v, u) = kept ? depth(v * step, u * step) : 0.0f;
-    }
-  }
+/// Every step-th pixel of every step-th row.
+cv::Mat Coarse(const cv::Mat& image, int step) {
+  cv::Mat coarse;
+  const cv::Size size((image.cols + step - 1) / step,
+                      (image.rows + step - 1) / step);
+  const cv::Matx23d shrink(step, 0, 0, 0, step, 0);
+  cv::warpAffine(image, coarse, shrink, size,
+                 cv::INTER_NEAREST | cv::WARP_INVERSE_MAP);
   return coarse;
 }
 
-std::vector<GridPoint> Points(const cv::Mat_<float>& grid) {
-  std::vector<GridPoint> points;
-  for (int v = 0; v < grid.rows; ++v) {
-    for (int u = 0; u < grid.cols; ++u) {
-      if (grid(v, u) > 0) points.push_back({u, v, grid(v, u)});
+/// Median of the values at the pixels of `mask`, of which there are some.
+float Median(const cv::Mat_<float>& values, const cv::Mat_<uchar>& mask) {
+  std::vector<float> chosen;
+  for (int v = 0; v < values.rows; ++v) {
+    for (int u = 0; u < values.cols; ++u) {
+      if (mask(v, u)) chosen.push_back(values(v, u));
     }
   }
-  return points;
+  const auto middle = chosen.begin() + chosen.size() / 2;
+  std::nth_element(chosen.begin(), middle, chosen.end());
+  return *middle;
 }
 
-float At(const cv::Mat_<float>& grid, int v, int u) {
-  const bool inside = u >= 0 && v >= 0 && u < grid.cols && v < grid.rows;
-  return inside ? grid(v, u) : 0.0f;
+/// For every shift the sum of `values` at the pixels that `mask`, shifted,
+/// covers; entry (mask.rows + dv, mask.cols + du). Whole numbers and halves.
+cv::Mat_<float> SumUnder(const cv::Mat& mask, const cv::Mat& values) {
+  cv::Mat bordered, sums;
+  cv::copyMakeBorder(values, bordered, mask.rows, mask.rows, mask.cols,
+                     mask.cols, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::matchTemplate(bordered, mask, sums, cv::TM_CCORR);
+  // Without the rounding errors of the Fourier transform.
+  for (float& sum : cv::Mat_<float>(sums)) sum = std::round(2 * sum) / 2;
+  return sums;
 }
 
-DepthState Compare(float live, float model) {
-  return ClassifyDepth(live, model, kTolerance.At(live));
-}
-
-/// What is searched through: the coarse grids.
-struct Search {
-  cv::Mat_<float> model;
-  cv::Mat_<float> live;            // Everything that is seen.
-  std::vector<GridPoint> own;      // Live points of the surface.
-  std::vector<GridPoint> visible;  // Model points.
-
-  /// Explained live points count for a shift; model points that would hide
-  /// what is seen behind them, and the way itself, count against it.
-  Shift Score(int du, int dv, int layer) const {
-    Shift shift{du, dv, layer};
-    for (const GridPoint& p : own) {
-      const float z = At(model, p.v - dv, p.u - du);
-      shift.hits += z > 0 && Compare(p.depth, z + kLayer * layer) ==
-                                 DepthState::kObserved;
-    }
-    int violations = 0;
-    for (const GridPoint& p : visible) {
-      const float z = At(live, p.v + dv, p.u + du);
-      violations += Compare(z, p.depth + kLayer * layer) == DepthState::kFree;
-    }
-    const double way = std::abs(du) + std::abs(dv) + std::abs(layer);
-    shift.score = shift.hits - 0.5 * violations - 0.002 * way * own.size();
-    return shift;
-  }
-
-  Shift BestOfColumn(int du) const {
-    Shift best;
-    for (int dv = -kMaxRows; dv <= kMaxRows; ++dv) {
-      for (int layer = -kMaxLayers; layer <= kMaxLayers; ++layer) {
-        const Shift shift = Score(du, dv, layer);
-        if (shift.score > best.score) best = shift;
+/// The best shift, of several the shortest one.
+cv::Point BestShift(const cv::Mat_<float>& sums, const cv::Point& none) {
+  cv::Point best = none;
+  for (int v = 0; v < sums.rows; ++v) {
+    for (int u = 0; u < sums.cols; ++u) {
+      const cv::Point way = cv::Point(u, v) - none, so_far = best - none;
+      if (sums(v, u) > sums(best) ||
+          (sums(v, u) == sums(best) && way.dot(way) < so_far.dot(so_far))) {
+        best = {u, v};
       }
     }
-    return best;
   }
-};
+  return best - none;
+}
 
-float MedianDepth(std::vector<GridPoint> points) {
-  const auto middle = points.begin() + points.size() / 2;
-  std::nth_element(
-      points.begin(), middle, points.end(),
-      [](const GridPoint& a, const GridPoint& b) { return a.depth < b.depth; });
-  return middle->depth;
+/// `image` moved by `shift` pixels, 0 where nothing comes from.
+cv::Mat_<float> Shifted(const cv::Mat_<float>& image, const cv::Point& shift) {
+  cv::Mat moved;
+  const cv::Matx23d way(1, 0, shift.x, 0, 1, shift.y);
+  cv::warpAffine(image, moved, way, image.size(), cv::INTER_NEAREST);
+  return moved;
 }
 
 }  // namespace
@@ -120,30 +81,40 @@ std::optional<Rigid3d> FindImageShift(const cv::Mat_<float>& model,
                                       const LiveView& live,
                                       std::uint16_t surface) {
   const int stride = std::max(1, live.depth.cols / std::max(1, model.cols));
-  Search search;
   const int model_step = std::max(1, live.depth.cols / kColumns / stride);
   const int step = model_step * stride;  // Live pixels between candidates.
-  search.model = Coarse(model, model_step, [](int, int) { return true; });
-  search.live = Coarse(live.depth, step, [](int, int) { return true; });
-  search.own = Points(Coarse(live.depth, step, [&](int v, int u) {
-    return live.labels(v, u) == surface;
-  }));
-  search.visible = Points(search.model);
-  if (search.own.empty() || search.visible.empty()) return std::nullopt;
-  std::vector<Shift> columns(2 * kMaxColumns + 1);
-  tbb::parallel_for(0, 2 * kMaxColumns + 1, [&](int i) {
-    columns[i] = search.BestOfColumn(i - kMaxColumns);
-  });
-  const Shift best = *std::max_element(
-      columns.begin(), columns.end(),
-      [](const Shift& a, const Shift& b) { return a.score < b.score; });
-  const auto comparable = std::min(search.own.size(), search.visible.size());
-  if (best.hits < kMinExplained * comparable) return std::nullopt;
-  const double z = MedianDepth(search.own);
+  const cv::Mat_<float> coarse = Coarse(model, model_step);
+  const cv::Mat_<float> seen = Coarse(live.depth, step);
+  const cv::Mat_<uchar> own =
+      (Coarse(live.labels, step) == surface) & (seen > 0);
+  const int visible = cv::countNonZero(coarse > 0);
+  if (cv::countNonZero(own) == 0 || visible == 0) return std::nullopt;
+  const float z = Median(seen, own);
+
+  // A live point of the surface that the model explains counts for a shift;
+  // what is seen behind the surface and the model would hide, half against it.
+  cv::Mat_<float> worth(seen.size(), 0.0f), mask(coarse.size(), 0.0f);
+  worth.setTo(-0.5f, seen > z + kOneBody.At(z));
+  worth.setTo(1.0f, own);
+  mask.setTo(1.0f, coarse > 0);
+  const cv::Point shift =
+      BestShift(SumUnder(mask, worth), {mask.cols, mask.rows});
+
+  const cv::Mat_<float> moved = Shifted(coarse, shift);
+  const cv::Mat_<uchar> both = own & (moved > 0);
+  if (cv::countNonZero(both) == 0) return std::nullopt;
+  const cv::Mat_<float> change = seen - moved;
+  const float depth_change = Median(change, both);
+  const int explained = cv::countNonZero(
+      both & (cv::abs(change - depth_change) < kOneBody.At(z)));
+  if (std::abs(depth_change) > kMaxDepthChange ||
+      explained < kMinExplained * std::min(cv::countNonZero(own), visible)) {
+    return std::nullopt;
+  }
   Rigid3d motion = Rigid3d::Identity();
   motion.translation() =
-      Eigen::Vector3d(best.du * step * z / live.camera.fx,
-                      best.dv * step * z / live.camera.fy, kLayer * best.layer);
+      Eigen::Vector3d(shift.x * step * z / live.camera.fx,
+                      shift.y * step * z / live.camera.fy, depth_change);
   return motion;
 }
 

@@ -10,9 +10,10 @@
 namespace splitfusion {
 
 /// Finds a surface again that was lost: the translation under which its
-/// rendering explains its live pixels best. Searched exhaustively over shifts
-/// of the image and steps in depth, so that neither a far jump nor a half
-/// hidden surface misleads it, as both mislead the centroid.
+/// rendering explains its live pixels best. All shifts of the image are
+/// compared, by cross-correlation, so that neither a far jump nor a half hidden
+/// surface misleads it, as both mislead the centroid; the depth follows from
+/// the pixels that are explained then.
 ///
 /// `model`: depth of the surface alone, HxW of every n-th live pixel, metres,
 /// 0 = nothing.

@@ -3,13 +3,6 @@
 #include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
-namespace {
-
-/// Of what is nearer than a model.
-constexpr DepthTolerance<float> kInFront = {0.1f};
-
-}  // namespace
-
 double Exposure(const cv::Mat_<float>& model, int step, const LiveView& live,
                 int surface) {
   int seen = 0;
@@ -21,7 +14,7 @@ double Exposure(const cv::Mat_<float>& model, int step, const LiveView& live,
       if (live.labels(v * step, u * step) == surface) {
         ++seen;
       } else {
-        hidden += ClassifyDepth(depth, model(v, u), kInFront.At(depth)) ==
+        hidden += ClassifyDepth(depth, model(v, u), kOneBody.At(depth)) ==
                   DepthState::kOccluded;
       }
     }

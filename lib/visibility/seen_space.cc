@@ -14,8 +14,6 @@ namespace {
 constexpr int kInterval = 4;        // Frames.
 constexpr std::size_t kViews = 12;  // Remembered at most.
 constexpr int kWindow = 5;          // Pixels: room for errors of the pose.
-/// Between the seen depth and a point in front of it; both are noisy.
-constexpr DepthTolerance<float> kClearance = {0.08f, 3};
 
 }  // namespace
 
@@ -55,10 +53,10 @@ bool SeenSpace::LookedThrough(const View& view,
   }
   const int u = static_cast<int>(x), v = static_cast<int>(y);
   const float seen = view.depth(v, u);
-  const DepthTolerance<float> tolerance = {kClearance.At(point.z()),
-                                           kClearance.sigmas};
-  return ClassifyDepth(seen, point.z(), tolerance.At(seen)) ==
-         DepthState::kFree;
+  // Both are noisy.
+  const float tolerance =
+      kOneBody.At(point.z()) + DepthTolerance<float>().At(seen);
+  return ClassifyDepth(seen, point.z(), tolerance) == DepthState::kFree;
 }
 
 cv::Mat_<uchar> SeenSpace::WasEmpty(const cv::Mat_<uchar>& mask,

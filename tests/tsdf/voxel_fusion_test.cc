@@ -22,7 +22,7 @@ namespace {
 
 constexpr float kVoxel = 0.01f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-const TsdfOptions kOptions = {kVoxel, 0.04, 20, 5};
+const TsdfOptions kOptions = {kVoxel, 0.04, 20};
 
 /// A block's voxels.
 struct Block {
@@ -386,7 +386,7 @@ TEST_F(VoxelFusion, IntoForeignCellsOnlyFreeSpaceIsFused) {
 
 TEST_F(VoxelFusion, FreeSpaceThatIsKnownWellDoesNotChange) {
   seen_ = ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1.5));
-  const TsdfOptions options = {kVoxel, 0.04, 20, 20};
+  const TsdfOptions options = {kVoxel, 0.04, 20};
   const FusionImage image(seen_, options, 1);
   Block block;
   block.distance.fill(static_cast<float>(options.truncation));
