@@ -15,6 +15,8 @@ constexpr int kColumns = 80;  // Speed: of the grid that is searched.
 /// larger or smaller.
 constexpr float kMaxDepthChange = 0.4f;
 constexpr double kMinExplained = 0.3;
+/// Of the live points, as much as a pixel of way counts.
+constexpr double kWayCost = 0.002;
 
 /// Every step-th pixel of every step-th row.
 cv::Mat Coarse(const cv::Mat& image, int step) {
@@ -52,16 +54,19 @@ cv::Mat_<float> SumUnder(const cv::Mat& mask, const cv::Mat& values) {
   return sums;
 }
 
-/// The best shift, of several the shortest one.
-cv::Point BestShift(const cv::Mat_<float>& sums, const cv::Point& none) {
+/// The shift with the greatest sum, less `cost` for every pixel of its way: a
+/// model that is smaller than what is seen fits in many places.
+cv::Point BestShift(const cv::Mat_<float>& sums, const cv::Point& none,
+                    double cost) {
   cv::Point best = none;
+  double best_worth = sums(none);
   for (int v = 0; v < sums.rows; ++v) {
     for (int u = 0; u < sums.cols; ++u) {
-      const cv::Point way = cv::Point(u, v) - none, so_far = best - none;
-      if (sums(v, u) > sums(best) ||
-          (sums(v, u) == sums(best) && way.dot(way) < so_far.dot(so_far))) {
-        best = {u, v};
-      }
+      const double worth =
+          sums(v, u) - cost * (std::abs(u - none.x) + std::abs(v - none.y));
+      if (worth <= best_worth) continue;
+      best_worth = worth;
+      best = {u, v};
     }
   }
   return best - none;
@@ -98,7 +103,8 @@ std::optional<Rigid3d> FindImageShift(const cv::Mat_<float>& model,
   worth.setTo(1.0f, own);
   mask.setTo(1.0f, coarse > 0);
   const cv::Point shift =
-      BestShift(SumUnder(mask, worth), {mask.cols, mask.rows});
+      BestShift(SumUnder(mask, worth), {mask.cols, mask.rows},
+                kWayCost * cv::countNonZero(own));
 
   const cv::Mat_<float> moved = Shifted(coarse, shift);
   const cv::Mat_<uchar> both = own & (moved > 0);
