@@ -126,7 +126,7 @@ NewNodes FindNewNodes(const TriangleMesh& mesh, const GraphOptions& options,
   if (graph.size() > 0 && room <= 0) return found;
   found.vertices = UncoveredVertices(mesh, supports, found.spacing);
   while (static_cast<int>(found.vertices.size()) > room) {
-    constexpr double kWider = 1.1;  // Speed: of the search.
+    constexpr double kWider = 1.1;
     found.spacing *= kWider;
     found.vertices = UncoveredVertices(mesh, supports, found.spacing);
   }

@@ -49,7 +49,7 @@ double PlaceTolerance(const TsdfOptions& options) {
 
 /// Places of live points that belong to a surface, every fourth pixel.
 std::vector<Eigen::Vector3d> PlacesOfSurface(const CanonicalPlaces& found) {
-  constexpr int kPixelStride = 4;  // Speed: blocks are many pixels wide.
+  constexpr int kPixelStride = 4;  // Blocks are many pixels wide.
   std::vector<Eigen::Vector3d> places;
   for (int v = 0; v < found.points.rows; v += kPixelStride) {
     for (int u = 0; u < found.points.cols; u += kPixelStride) {

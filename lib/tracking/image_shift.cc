@@ -10,7 +10,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kColumns = 80;  // Speed: of the grid that is searched.
+constexpr int kColumns = 80;  // Of the grid that is searched.
 /// Farther from or nearer to the camera by more, metres, a surface would look
 /// larger or smaller.
 constexpr float kMaxDepthChange = 0.4f;

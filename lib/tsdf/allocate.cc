@@ -14,7 +14,7 @@ namespace {
 using internal::kLeafSize;
 
 /// Every other pixel of every other row.
-constexpr int kPixelStride = 2;  // Speed: blocks are many pixels wide.
+constexpr int kPixelStride = 2;  // Blocks are many pixels wide.
 
 openvdb::Coord LeafOrigin(const Eigen::Vector3d& voxel) {
   const auto align = [](double v) {
