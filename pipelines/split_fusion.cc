@@ -259,7 +259,7 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     if (object.id == 0) continue;
     Track& track = *splitter_.mutable_track(object.id);
     if (track.state == TrackState::kTracked) {
-      const double share = track.usual_pixels > 0 ? 0.1 : 1;
+      const double share = track.usual_pixels > 0 ? 1.0 / kUsualFrames : 1;
       track.usual_pixels += share * (object.pixels - track.usual_pixels);
     }
     Surface& surface = *surfaces_.at(object.id);

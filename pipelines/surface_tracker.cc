@@ -96,14 +96,15 @@ double Radians(double degrees) { return degrees * M_PI / 180; }
 }  // namespace
 
 std::vector<TrackingStage> TrackerOptions::RigidStages() const {
+  // Gates shrink by the same factor from stage to stage.
   const auto gates = [&](double distance, double angle, bool coarse) {
     return AssociationGates{distance * rigid_distance,
                             Radians(angle * rigid_angle),
                             Radians(grazing_angle), coarse};
   };
   return {{8, 5, gates(1, 1, true)},
-          {4, 4, gates(0.7, 5.0 / 6, false)},
-          {2, 4, gates(0.5, 2.0 / 3, false)}};
+          {4, 4, gates(std::sqrt(1.0 / 2), std::sqrt(2.0 / 3), false)},
+          {2, 4, gates(1.0 / 2, 2.0 / 3, false)}};
 }
 
 std::vector<TrackingStage> TrackerOptions::NonRigidStages() const {
@@ -163,6 +164,9 @@ void TrackerOptions::List(OptionList* list) {
   list->Number("velocity_gain", &velocity_gain, Range::Above(0), "",
                "Tracking starts from constant velocity if its misfit is below "
                "this fraction of that of standing still.");
+  list->Switch("keep_radius", &keep_radius,
+               "The trust region of a round starts from that of the round "
+               "before.");
   list->Number("min_samples", &min_samples, Range::AtLeast(0), "",
                "A surface with fewer samples is tracked at half the stride.");
 }
@@ -323,7 +327,10 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   if (!association.correspondences.empty()) {
     round.solver = solver_->Minimize(
         {energy_, association.correspondences, target.live.camera, &target.live,
-         &before, anneal, StartRadius(report->rounds, name, initial_radius_)},
+         &before, anneal,
+         options_.keep_radius
+             ? StartRadius(report->rounds, name, initial_radius_)
+             : initial_radius_},
         graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

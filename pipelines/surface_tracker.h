@@ -53,6 +53,8 @@ struct TrackerOptions {
   /// A surface with fewer samples than this at a stage's stride is tracked at
   /// half of it, down to the model map's own.
   int min_samples = 1500;
+  /// The trust region of a round starts from that of the round before.
+  bool keep_radius = true;
 
   /// The stages in which all nodes share one motion, coarse to fine.
   std::vector<TrackingStage> RigidStages() const;

@@ -78,7 +78,7 @@ PointwiseAssociator::Outcome PointwiseAssociator::Match(
   const int u = pixel.u, v = pixel.v;
   out->target = ToEigen(live_.map.points(v, u));
   const float gate =
-      std::max(gates.distance, DepthTolerance<float>().At(out->target.z()));
+      std::max(gates.distance, kNoiseAlone.At(out->target.z()));
   if ((point - out->target).squaredNorm() > gate * gate) return kDistance;
   out->target_normal = ToEigen(live_.map.normals(v, u));
   out->warped_normal = warp.WarpNormal(sample.skinning, sample.normal);

@@ -25,7 +25,7 @@ class ProjectiveAssociator : public PointwiseAssociator {
     if (!(depth > 0) || live_.map.normals(v, u)[2] == 0) return kNoDepth;
     if (live_.labels(v, u) != surface_) {
       return ClassifyDepth(depth, point.z(),
-                           DepthTolerance<float>().At(depth)) ==
+                           kNoiseAlone.At(depth)) ==
                      DepthState::kOccluded
                  ? kOccluded
                  : kOtherSurface;

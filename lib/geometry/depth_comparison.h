@@ -25,6 +25,9 @@ struct DepthTolerance {
   }
 };
 
+/// Depths within it are equal but for noise.
+constexpr DepthTolerance<float> kNoiseAlone;
+
 /// Depths within it may be of one body; beyond, something else is there.
 constexpr DepthTolerance<float> kOneBody = {0.1f};
 

@@ -135,8 +135,7 @@ class WarpedModel {
         graph_.positions[hint->node];
     *place = {static_cast<float>(carried.x()), static_cast<float>(carried.y()),
               static_cast<float>(carried.z())};
-    if (distance < graph_.node_spacing) return Coverage::kNearNodes;
-    return distance < limits_.reach ? Coverage::kBeyondNodes
+    return distance < limits_.reach ? Coverage::kCarried
                                     : Coverage::kOutOfReach;
   }
 

@@ -13,11 +13,10 @@ namespace splitfusion {
 
 /// How much of a surface's model there is at a live point of the surface.
 enum class Coverage : std::uint8_t {
-  kNone,         ///< Not a point of the surface, or not a certain one.
-  kModelled,     ///< The mesh is there.
-  kNearNodes,    ///< No mesh yet, but a node within the graph's spacing.
-  kBeyondNodes,  ///< The graph has to grow to carry it.
-  kOutOfReach,   ///< Too far from every node to belong to the graph.
+  kNone,        ///< Not a point of the surface, or not a certain one.
+  kModelled,    ///< The mesh is there.
+  kCarried,     ///< No mesh yet, but a node that can carry it.
+  kOutOfReach,  ///< Too far from every node to belong to the graph.
 };
 
 /// Where the live points of a non-rigid surface belong in its canonical frame.

@@ -107,7 +107,7 @@ class Refiner {
                Eigen::Vector3f* gradient) const {
     const float reach = 2 * voxel_step;
     float place = t - 0.5f * voxel_step;
-    constexpr int kRefinements = 2;
+    constexpr int kRefinements = 2;  // Maths: Newton's method converges.
     for (int i = 0; i < kRefinements; ++i) {
       Sample sample;
       if (!Interpolate(origin_ + place * step, &sample)) return 0;

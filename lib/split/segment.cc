@@ -6,9 +6,6 @@
 namespace splitfusion {
 namespace {
 
-/// Smaller islands are dropped, pixels; unless nothing larger is there.
-constexpr int kMinIsland = 60;
-
 void PaintCut(const Segment& segment, int label, LabelImage* labels,
               cv::Mat_<float>* strength) {
   const cv::Rect& crop = segment.evidence.crop;
@@ -24,15 +21,17 @@ void PaintCut(const Segment& segment, int label, LabelImage* labels,
   }
 }
 
-/// Drops small islands of one segment from the labels.
-void DropSpecks(const cv::Rect& crop, int label, LabelImage* labels) {
+/// Drops the islands of one segment with fewer pixels than `min_island` from
+/// the labels.
+void DropIslands(const cv::Rect& crop, int label, int min_island,
+                 LabelImage* labels) {
   LabelImage view = (*labels)(crop);
   cv::Mat islands, statistics, centers;
   const int count = cv::connectedComponentsWithStats(
       view == label, islands, statistics, centers, 8, CV_32S);
   std::vector<bool> drop(count, false);
   for (int i = 1; i < count; ++i) {
-    drop[i] = statistics.at<int>(i, cv::CC_STAT_AREA) < kMinIsland;
+    drop[i] = statistics.at<int>(i, cv::CC_STAT_AREA) < min_island;
   }
   for (int v = 0; v < view.rows; ++v) {
     for (int u = 0; u < view.cols; ++u) {
@@ -92,7 +91,7 @@ cv::Mat_<uchar> SegmentPixels(int index, const LabelImage& segment_labels) {
 
 LabelImage ComposeSegments(const std::vector<Segment>& segments,
                            const LabelImage& predicted_labels,
-                           const cv::Mat& depth) {
+                           const cv::Mat& depth, int min_island) {
   LabelImage labels(depth.size(), 0);
   cv::Mat_<float> strength(depth.size(), 0.0f);
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -102,7 +101,7 @@ LabelImage ComposeSegments(const std::vector<Segment>& segments,
     const cv::Rect& crop = segments[i].evidence.crop;
     if (crop.area() == 0) continue;
     const int label = static_cast<int>(i) + 1;
-    DropSpecks(crop, label, &labels);
+    DropIslands(crop, label, min_island, &labels);
     FillWithoutDepth(crop, ClosedOutline(segments[i], predicted_labels), label,
                      depth, &labels);
   }

@@ -38,13 +38,14 @@ cv::Mat_<uchar> SegmentPixels(int index, const LabelImage& segment_labels);
 
 /// Joins the cuts of all segments: HxW, 1 + index of the segment that a pixel
 /// belongs to, 0 = none. Where two claim a pixel the stronger evidence wins.
-/// Specks are dropped. Pixels without depth take the detector's mask (the
-/// projected surface if there was no detection), closed over small holes.
+/// Islands of fewer than `min_island` pixels are dropped. Pixels without depth
+/// take the detector's mask (the projected surface if there was no detection),
+/// closed over small holes.
 ///
 /// `depth`: HxW 32FC1, metres, 0 = none.
 LabelImage ComposeSegments(const std::vector<Segment>& segments,
                            const LabelImage& predicted_labels,
-                           const cv::Mat& depth);
+                           const cv::Mat& depth, int min_island);
 
 }  // namespace splitfusion
 

@@ -20,6 +20,8 @@ void SplitOptions::List(OptionList* list) {
                "A larger detection makes no surface.");
   list->Number("min_instance_pixels", &min_pixels, Range::AtLeast(1), "pixels",
                "Instances with fewer pixels with depth are ignored.");
+  list->Number("min_island", &min_island, Range::AtLeast(0), "pixels",
+               "Smaller islands of a surface are no part of it.");
   list->Number("max_missed_frames", &max_missed_frames, Range::AtLeast(0),
                "frames", "A surface is followed so long without a detection.");
   list->Number("birth_frames", &birth_frames, Range::AtLeast(1), "frames",

@@ -127,8 +127,8 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                                                &unconfirmed, &result.decisions);
   AddMissedSurfaces(&segments);
   CutSegments(input, &segments);
-  const LabelImage segment_labels =
-      ComposeSegments(segments, compared.labels, frame.depth);
+  const LabelImage segment_labels = ComposeSegments(
+      segments, compared.labels, frame.depth, options_.min_island);
   SettleSurfaces(segments, input, &result.decisions);
   for (int i = 0; i < static_cast<int>(segments.size()); ++i) {
     if (segments[i].surface > 0) continue;

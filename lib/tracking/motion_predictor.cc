@@ -8,9 +8,6 @@
 namespace splitfusion {
 namespace {
 
-/// Tracked frames whose steps are remembered.
-constexpr std::size_t kSteps = 10;
-
 /// Frames after which an unseen surface has slowed down to 1/e: half a second.
 constexpr double kRestFrames = 15;
 
@@ -54,7 +51,7 @@ Rigid3d MotionPredictor::MotionOf(const Rigid3d& world_from_canonical,
   const Eigen::Vector3d before = *known_ * center;
   if (frames_since_ == 1) {
     steps_.push_back(world_from_canonical * center - before);
-    if (steps_.size() > kSteps) steps_.pop_front();
+    if (steps_.size() > kUsualFrames) steps_.pop_front();
   }
   return MotionOfOneFrame(world_from_canonical * known_->inverse(), before,
                           frames_since_);

@@ -5,6 +5,10 @@
 
 namespace splitfusion {
 
+/// What is usual of a surface, its step and its size, is that of as many of
+/// its last tracked frames.
+constexpr int kUsualFrames = 10;
+
 /// What is known of where a surface is, see docs/surfaces_in_time.md.
 enum class TrackState {
   kTentative,  ///< Detected, not yet believed to be a surface.

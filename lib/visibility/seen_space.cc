@@ -54,8 +54,7 @@ bool SeenSpace::LookedThrough(const View& view,
   const int u = static_cast<int>(x), v = static_cast<int>(y);
   const float seen = view.depth(v, u);
   // Both are noisy.
-  const float tolerance =
-      kOneBody.At(point.z()) + DepthTolerance<float>().At(seen);
+  const float tolerance = kOneBody.At(point.z()) + kNoiseAlone.At(seen);
   return ClassifyDepth(seen, point.z(), tolerance) == DepthState::kFree;
 }
 

@@ -104,7 +104,7 @@ TEST_F(CanonicalPlacesTest, EveryPointIsCarriedBackToItsPlace) {
 
 TEST_F(CanonicalPlacesTest, CoverageGrowsLessWithTheDistance) {
   const CanonicalPlaces found = Find();
-  int count[5] = {};
+  int count[4] = {};
   for (int v = 0; v < 120; ++v) {
     for (int u = 80; u < 160; ++u) {
       ++count[found.coverage(v, u)];
@@ -116,11 +116,8 @@ TEST_F(CanonicalPlacesTest, CoverageGrowsLessWithTheDistance) {
         case Coverage::kModelled:
           EXPECT_LT(beside, limits_.mesh);
           break;
-        case Coverage::kNearNodes:
+        case Coverage::kCarried:
           EXPECT_GT(beside, 0.012);
-          EXPECT_LT(beside, graph_.node_spacing);
-          break;
-        case Coverage::kBeyondNodes:
           EXPECT_LT(beside, limits_.reach);
           break;
         default:
@@ -128,7 +125,7 @@ TEST_F(CanonicalPlacesTest, CoverageGrowsLessWithTheDistance) {
       }
     }
   }
-  for (int kind = 1; kind < 5; ++kind) EXPECT_GT(count[kind], 20) << kind;
+  for (int kind = 1; kind < 4; ++kind) EXPECT_GT(count[kind], 20) << kind;
 }
 
 TEST_F(CanonicalPlacesTest, OtherSurfacesAndWhatIsUncertainHaveNone) {
@@ -173,9 +170,9 @@ TEST_F(CanonicalPlacesTest, WithoutAMeshNodesCarryEverything) {
   EXPECT_EQ(
       cv::countNonZero(found.coverage == static_cast<int>(Coverage::kModelled)),
       0);
-  EXPECT_GT(cv::countNonZero(found.coverage ==
-                             static_cast<int>(Coverage::kNearNodes)),
-            300);
+  EXPECT_GT(
+      cv::countNonZero(found.coverage == static_cast<int>(Coverage::kCarried)),
+      300);
 }
 
 }  // namespace

@@ -20,12 +20,13 @@ Segment Claim(int surface, const cv::Rect& rect, float evidence) {
 }
 
 const LabelImage kNothing(120, 160, std::uint16_t(0));
+constexpr int kMinIsland = 60;
 const cv::Mat kDepth(120, 160, CV_32FC1, cv::Scalar(2));
 
 TEST(ComposeSegments, TheStrongerClaimWins) {
   const LabelImage labels = ComposeSegments(
       {Claim(5, {10, 10, 40, 40}, 0.2f), Claim(7, {30, 10, 40, 40}, 0.6f)},
-      kNothing, kDepth);
+      kNothing, kDepth, kMinIsland);
   EXPECT_EQ(labels(20, 20), 1);
   EXPECT_EQ(labels(20, 40), 2);
   EXPECT_EQ(labels(20, 60), 2);
@@ -43,15 +44,17 @@ TEST(MasksBut, JoinsAllMasksButOne) {
   EXPECT_EQ(cv::norm(others, segments[2].mask, cv::NORM_INF), 0);
 }
 
-TEST(ComposeSegments, DropsSpecks) {
+TEST(ComposeSegments, DropsIslands) {
   Segment segment = Claim(1, {10, 10, 60, 40}, 0.2f);
   segment.foreground.colRange(40, 55) = 0;
-  const cv::Rect speck(55, 5, 5, 5);  // Of the crop.
+  const cv::Rect island(55, 5, 5, 5);  // Of the crop.
   segment.foreground.colRange(55, 60) = 0;
-  segment.foreground(speck) = 255;
-  const LabelImage labels = ComposeSegments({segment}, kNothing, kDepth);
+  segment.foreground(island) = 255;
+  const LabelImage labels =
+      ComposeSegments({segment}, kNothing, kDepth, kMinIsland);
   EXPECT_EQ(labels(17, 67), 0);
   EXPECT_EQ(cv::countNonZero(labels), 40 * 40);
+  EXPECT_EQ(ComposeSegments({segment}, kNothing, kDepth, 0)(17, 67), 1);
 }
 
 TEST(ComposeSegments, PixelsWithoutDepthTakeTheMaskClosed) {
@@ -61,12 +64,12 @@ TEST(ComposeSegments, PixelsWithoutDepthTakeTheMaskClosed) {
   depth(shadow) = 0.0;
   segment.foreground(shadow - segment.evidence.crop.tl()) = 0;
   segment.mask(cv::Rect(34, 24, 3, 3)) = 0;  // A small hole of the mask.
-  LabelImage labels = ComposeSegments({segment}, kNothing, depth);
+  LabelImage labels = ComposeSegments({segment}, kNothing, depth, kMinIsland);
   EXPECT_EQ(cv::countNonZero(labels), 60 * 40);
   // A large hole of the mask stays open.
   segment.mask(cv::Rect(15, 15, 50, 30)) = 0;
   segment.foreground(cv::Rect(5, 5, 50, 30)) = 0;
-  labels = ComposeSegments({segment}, kNothing, depth);
+  labels = ComposeSegments({segment}, kNothing, depth, kMinIsland);
   EXPECT_EQ(labels(25, 35), 0);
 }
 
@@ -77,10 +80,11 @@ TEST(ComposeSegments, WithoutDetectionTheProjectionFillsHoles) {
   const cv::Rect shadow(30, 20, 20, 20);
   depth(shadow) = 0.0;
   segment.foreground(shadow - segment.evidence.crop.tl()) = 0;
-  EXPECT_EQ(ComposeSegments({segment}, kNothing, depth)(30, 40), 0);
+  EXPECT_EQ(ComposeSegments({segment}, kNothing, depth, kMinIsland)(30, 40), 0);
   LabelImage predicted = kNothing.clone();
   predicted(segment.evidence.crop) = 3;
-  EXPECT_EQ(ComposeSegments({segment}, predicted, depth)(30, 40), 1);
+  EXPECT_EQ(ComposeSegments({segment}, predicted, depth, kMinIsland)(30, 40),
+            1);
 }
 
 }  // namespace
