@@ -3,6 +3,7 @@
 #include "splitfusion/cost_functions/arap.h"
 #include "splitfusion/cost_functions/color_constancy.h"
 #include "splitfusion/cost_functions/last_seen_arap.h"
+#include "splitfusion/cost_functions/live_to_model.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
 #include "splitfusion/cost_functions/temporal_arap.h"
 
@@ -15,6 +16,8 @@ TermRegistry BuiltinTerms() {
   registry.Register("color",
                     [] { return std::make_unique<ColorConstancyTerm>(); });
   registry.Register("arap", [] { return std::make_unique<ArapTerm>(); });
+  registry.Register("live_to_model",
+                    [] { return std::make_unique<LiveToModelTerm>(); });
   registry.Register("temporal_arap",
                     [] { return std::make_unique<TemporalArapTerm>(); });
   registry.Register("last_seen_arap",

@@ -111,7 +111,7 @@ std::vector<TrackingStage> TrackerOptions::NonRigidStages() const {
   const auto gates = [&](double distance, bool coarse) {
     return AssociationGates{distance * non_rigid_distance,
                             Radians(non_rigid_angle), Radians(grazing_angle),
-                            coarse};
+                            coarse, lost_distance};
   };
   return {{4, 3, gates(1, true)}, {4, 5, gates(0.5, false)}};
 }
@@ -139,12 +139,17 @@ void TrackerOptions::List(OptionList* list) {
   list->Number("non_rigid_angle", &non_rigid_angle, {0, 180, true}, "degrees",
                "Largest angle of normals in the non-rigid stages.")
       .common = true;
+  list->Number("lost_distance", &lost_distance, Range::AtLeast(0), "metres",
+               "In the non-rigid stages live points without model are paired, "
+               "for live_to_model, with model points astray up to this far.")
+      .common = true;
   list->Number("grazing_angle", &grazing_angle, {0, 90, true}, "degrees",
                "Between live normal and view ray; beyond, depth is not used.");
   list->Number(
           "prior_anneal", &prior_anneal, Range::AtLeast(1), "",
           "Over the non-rigid rounds of a frame, anneal falls from this to "
-          "1; temporal_arap has (anneal - 1) times its weight.")
+          "1; temporal_arap and live_to_model have (anneal - 1) times their "
+          "weight.")
       .common = true;
   list->Number(
       "settled", &settled, Range::AtLeast(0), "",
@@ -319,6 +324,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   const Association association = target.associator.Associate(
       samples, WarpField(*graph), stage.stride, stage.gates);
   round.association = association.counts;
+  round.lost_pairs = static_cast<int>(association.lost.size());
   if (!graph->rigid()) {
     graph->seen = SeenShares(association.correspondences, graph->size());
   }
@@ -330,7 +336,8 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
          &before, anneal,
          options_.keep_radius
              ? StartRadius(report->rounds, name, initial_radius_)
-             : initial_radius_},
+             : initial_radius_,
+         &association.lost},
         graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

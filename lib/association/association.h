@@ -18,6 +18,7 @@ struct AssociationGates {
   double normal_angle = 0;    ///< Radians between the normals.
   double grazing_angle = 0;   ///< Radians between live normal and view ray.
   bool coarse_color = false;  ///< Compare colours at the coarse level.
+  double lost_distance = 0;   ///< Of Association::lost, metres; 0: none.
 };
 
 /// Result of one association.
@@ -25,6 +26,11 @@ struct Association {
   std::vector<Correspondence> correspondences;  ///< In order of the samples.
   /// What became of every sample.
   AssociationCounts counts;
+  /// Of what the correspondences leave over on both sides: live points of the
+  /// surface that no sample was found for, and samples that would be in view
+  /// but are not where the model has them. A part that moved farther than the
+  /// gates is both.
+  std::vector<Correspondence> lost = {};
 };
 
 /// Finds the pairs of model and live points of one surface in one frame (set

@@ -9,7 +9,7 @@ namespace {
 class ClosestPointAssociator : public PointwiseAssociator {
  public:
   ClosestPointAssociator(const LiveView& live, std::uint16_t surface)
-      : PointwiseAssociator(live, {kNoDepth}) {
+      : PointwiseAssociator(live, surface, {kNoDepth}) {
     std::vector<Eigen::Vector3f> points;
     for (int v = 0; v < live.depth.rows; ++v) {
       for (int u = 0; u < live.depth.cols; ++u) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "splitfusion/lib/association/lost_parts.h"
+
 namespace splitfusion {
 namespace {
 
@@ -42,8 +44,9 @@ struct PointwiseAssociator::Gates {
 };
 
 PointwiseAssociator::PointwiseAssociator(const LiveView& live,
+                                         std::uint16_t surface,
                                          std::vector<Outcome> outcomes)
-    : live_(live), outcomes_(std::move(outcomes)) {
+    : live_(live), surface_(surface), outcomes_(std::move(outcomes)) {
   outcomes_.insert(outcomes_.end(), {kDistance, kNormalAngle, kGrazing});
 }
 
@@ -68,6 +71,12 @@ RejectedPoints PointwiseAssociator::Row(Outcome outcome) {
   }
 }
 
+bool PointwiseAssociator::IsAstray(Outcome outcome) {
+  if (outcome == kAccepted) return false;
+  const Rejection kind = Row(outcome).kind;
+  return kind == Rejection::kAbsent || kind == Rejection::kMisfit;
+}
+
 PointwiseAssociator::Outcome PointwiseAssociator::Match(
     const ModelSample& sample, const WarpField& warp, const Gates& gates,
     Correspondence* out) const {
@@ -77,8 +86,7 @@ PointwiseAssociator::Outcome PointwiseAssociator::Match(
   if (found != kAccepted) return found;
   const int u = pixel.u, v = pixel.v;
   out->target = ToEigen(live_.map.points(v, u));
-  const float gate =
-      std::max(gates.distance, kNoiseAlone.At(out->target.z()));
+  const float gate = std::max(gates.distance, kNoiseAlone.At(out->target.z()));
   if ((point - out->target).squaredNorm() > gate * gate) return kDistance;
   out->target_normal = ToEigen(live_.map.normals(v, u));
   out->warped_normal = warp.WarpNormal(sample.skinning, sample.normal);
@@ -127,8 +135,10 @@ Association PointwiseAssociator::Associate(
                     });
   std::array<int, kGrazing + 1> counts{};
   std::size_t accepted = 0;
+  std::vector<const ModelSample*> astray;
   for (std::size_t i = 0; i < used.size(); ++i) {
     ++counts[outcomes[i]];
+    if (IsAstray(outcomes[i])) astray.push_back(used[i]);
     if (outcomes[i] != kAccepted) continue;
     if (accepted < i) matches[accepted] = matches[i];
     ++accepted;
@@ -136,6 +146,11 @@ Association PointwiseAssociator::Associate(
   matches.resize(accepted);
   Association association;
   association.correspondences = std::move(matches);
+  if (association_gates.lost_distance > 0) {
+    association.lost = PairLostParts(
+        FindOpenPoints(live_, surface_, association.correspondences, stride),
+        astray, warp, association_gates);
+  }
   RemoveCommonBrightness(&association.correspondences);
   association.counts.model_points = static_cast<int>(used.size());
   association.counts.accepted = counts[kAccepted];

@@ -37,15 +37,17 @@ class PointwiseAssociator : public Associator {
     Eigen::Vector2f place;  ///< Between the pixels, where colour is compared.
   };
 
-  /// `outcomes`: the rejections of Find().
-  PointwiseAssociator(const LiveView& live, std::vector<Outcome> outcomes);
+  /// `surface`: whose live pixels count; `outcomes`: the rejections of Find().
+  PointwiseAssociator(const LiveView& live, std::uint16_t surface,
+                      std::vector<Outcome> outcomes);
 
   /// Sets the pixel of a sample whose warped point is `point` (camera frame,
   /// metres), unless it says why there is none. A pixel has depth and normal.
   virtual Outcome Find(const Eigen::Vector3f& point,
                        LivePixel* pixel) const = 0;
 
-  const LiveView& live_;  ///< The live frame.
+  const LiveView& live_;         ///< The live frame.
+  const std::uint16_t surface_;  ///< Id of the surface.
 
  private:
   struct Gates;
@@ -53,6 +55,8 @@ class PointwiseAssociator : public Associator {
   Outcome Match(const ModelSample& sample, const WarpField& warp,
                 const Gates& gates, Correspondence* out) const;
   static RejectedPoints Row(Outcome outcome);
+  /// Whether the sample would be in view and is not where the model has it.
+  static bool IsAstray(Outcome outcome);
 
   std::vector<Outcome> outcomes_;
 };

@@ -8,9 +8,9 @@ namespace {
 class ProjectiveAssociator : public PointwiseAssociator {
  public:
   ProjectiveAssociator(const LiveView& live, std::uint16_t surface)
-      : PointwiseAssociator(live, {kOutsideImage, kNoDepth, kOccluded,
-                                   kOtherSurface, kDepthEdge}),
-        surface_(surface) {}
+      : PointwiseAssociator(
+            live, surface,
+            {kOutsideImage, kNoDepth, kOccluded, kOtherSurface, kDepthEdge}) {}
 
  protected:
   Outcome Find(const Eigen::Vector3f& point, LivePixel* pixel) const override {
@@ -24,8 +24,7 @@ class ProjectiveAssociator : public PointwiseAssociator {
     const float depth = live_.depth(v, u);
     if (!(depth > 0) || live_.map.normals(v, u)[2] == 0) return kNoDepth;
     if (live_.labels(v, u) != surface_) {
-      return ClassifyDepth(depth, point.z(),
-                           kNoiseAlone.At(depth)) ==
+      return ClassifyDepth(depth, point.z(), kNoiseAlone.At(depth)) ==
                      DepthState::kOccluded
                  ? kOccluded
                  : kOtherSurface;
@@ -33,9 +32,6 @@ class ProjectiveAssociator : public PointwiseAssociator {
     if (live_.uncertain(v, u) != 0) return kOtherSurface;
     return live_.edges(v, u) != 0 ? kDepthEdge : kAccepted;
   }
-
- private:
-  std::uint16_t surface_;
 };
 
 }  // namespace

@@ -34,6 +34,9 @@ struct EnergyInput {
   /// Falls from TrackerOptions::prior_anneal to 1 over the rounds of a frame,
   /// for terms that begin stiff; nothing is scaled by it but by a term itself.
   double anneal = 1;
+  /// Pairs of what the correspondences leave over, see Association::lost; null
+  /// where a problem is solved without them.
+  const std::vector<Correspondence>* lost = nullptr;
 };
 
 /// One term of the energy (SplitFusion Eq. 4).

@@ -69,6 +69,8 @@ struct SurfaceProblem {
   double anneal = 1;
   /// First radius of the trust region; 0 = that of the options.
   double initial_radius = 0;
+  /// As `live`.
+  const std::vector<Correspondence>* lost = nullptr;
 };
 
 /// A way to minimise energies. Minimize() may run on several threads at once.

@@ -10,9 +10,9 @@ namespace splitfusion {
 
 std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
                                           const DeformationGraph& graph) {
-  const EnergyInput input{graph,          problem.correspondences,
-                          problem.camera, problem.live,
-                          problem.before, problem.anneal};
+  const EnergyInput input{graph,        problem.correspondences, problem.camera,
+                          problem.live, problem.before,          problem.anneal,
+                          problem.lost};
   std::vector<ProblemTerm> terms;
   WarpedPointsCache cache;
   for (const WeightedTerm& weighted : problem.energy) {

@@ -19,6 +19,7 @@ struct TrackingRound {
   int stride = 1;                 ///< Image resolution: every stride-th pixel.
   double anneal = 1;              ///< EnergyInput::anneal.
   AssociationCounts association;  ///< What became of the model points.
+  int lost_pairs = 0;             ///< Pairs of Association::lost.
   SolverReport solver;            ///< The minimisation after it.
 };
 

@@ -48,6 +48,7 @@ Json ToJson(const TrackingRound& round) {
           {"stride", round.stride},
           {"anneal", round.anneal},
           {"association", ToJson(round.association)},
+          {"lost_pairs", round.lost_pairs},
           {"solver", ToJson(round.solver)}};
 }
 

@@ -214,6 +214,77 @@ TEST(SurfaceTracker, WhatIsHiddenDoesNotSpringBackToRest) {
   EXPECT_LT(held, 0.7 * springs);
 }
 
+/// By how much the tip of an arm, 4 cm wide, is off its place in the mean,
+/// metres, after it was swung sideways by 7 cm at the tip within one frame.
+double ErrorOfSwungArm(const std::string& terms, SurfaceReport* report) {
+  constexpr double kSwing = 0.28;  // Radians about the shoulder, x = 0.1.
+  const auto sheet = [](double swing) {
+    const auto place = [swing](double x, double y) -> Eigen::Vector3d {
+      const double along = std::max(0.0, x - 0.1);
+      const double angle = along > 0 ? swing : 0;
+      return {x - along + std::cos(angle) * along - std::sin(angle) * y,
+              std::sin(angle) * along + std::cos(angle) * y,
+              1 + 0.01 * std::cos(60 * y)};
+    };
+    TriangleMesh mesh = SheetMesh(0.35, 0.04, 0.005, place);
+    AppendMesh(SheetMesh(0.3, 0.4, 0.01,
+                         [](double x, double y) -> Eigen::Vector3d {
+                           return {
+                               x - 0.2, y - 0.2,
+                               1 + 0.03 * std::sin(14 * x) * std::cos(16 * y)};
+                         }),
+               &mesh);
+    return mesh;
+  };
+  const TriangleMesh rest = sheet(0), swung = sheet(kSwing);
+  DeformationGraph graph = CoverWithNodes(rest, 0.03);
+  const SkinningIndex index(graph, 6);
+  const auto view = [](const TriangleMesh& mesh) {
+    cv::Mat_<float> depth = MeshDepth(Camera(), mesh);
+    const cv::Mat_<uchar> seen = depth > 0;
+    depth.setTo(2, depth == 0);  // A wall behind it.
+    LiveView live = View(depth);
+    live.labels.setTo(1, seen);
+    return live;
+  };
+  std::vector<ModelSample> samples = SamplesOf(view(rest), 1);
+  for (ModelSample& s : samples) s.skinning = index.Skin(s.point);
+  EXPECT_TRUE(
+      MakeTracker(TrackerOptions(), terms)
+          .Track(samples, view(swung), 1, Rigid3d::Identity(), &graph, report))
+      << report->reason;
+  const WarpField warp(graph);
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < rest.vertices.size(); ++i) {
+    if (rest.vertices[i].x() < 0.3) continue;
+    sum += (warp.WarpPoint(index.Skin(rest.vertices[i]), rest.vertices[i]) -
+            swung.vertices[i])
+               .norm();
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(SurfaceTracker, FindsAnArmThatMovedFartherThanItsWidth) {
+  SurfaceReport without, with;
+  const std::string seen = "live_to_model(weight=0.15,loss=huber,scale=0.013)";
+  EXPECT_GT(ErrorOfSwungArm("", &without), 0.04);
+  EXPECT_LT(ErrorOfSwungArm(seen, &with), 0.025);
+  const auto lost_pairs = [](const SurfaceReport& report, bool first) {
+    for (const TrackingRound& round : report.rounds) {
+      if (round.stage == "rigid") {
+        EXPECT_EQ(round.lost_pairs, 0);
+      } else if (first) {
+        return round.lost_pairs;
+      }
+    }
+    return report.rounds.back().lost_pairs;
+  };
+  EXPECT_GT(lost_pairs(with, true), 25);
+  EXPECT_LT(lost_pairs(with, false), lost_pairs(with, true) / 2);
+}
+
 TEST(SurfaceTracker, TellsWhichNodesWereSeen) {
   BendingSheet sheet;
   sheet.live.labels.colRange(sheet.live.labels.cols / 2, sheet.live.labels.cols)
