@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 
 namespace splitfusion {
 namespace {
@@ -155,14 +153,12 @@ void WriteOwnershipMarker(const std::string& path,
                      {"program", marker.program},
                      {"id", marker.id},
                      {"files", files}};
-  WriteFileAtomically(path,
-                      [&](std::ostream& out) { out << json.dump(1) << '\n'; });
+  WriteJson(path, json, 1);
 }
 
 std::optional<OwnershipMarker> ReadOwnershipMarker(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) return std::nullopt;
-  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!fs::exists(path)) return std::nullopt;
+  const Json json = ReadJsonOrNull(path);
   OwnershipMarker marker;
   try {
     if (json.at("format_version").get<int>() != kFormatVersion) {

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/evaluation/headline.h"
 #include "splitfusion/lib/evaluation/mean_error.h"
 #include "splitfusion/lib/evaluation/run_evaluation.h"
@@ -275,14 +274,6 @@ Json ToJson(const RunEvaluation& evaluation) {
   json["depth_agreement"] = depth;
   json["skipped"] = evaluation.skipped;
   return json;
-}
-
-void WriteJson(const std::string& path, const Json& value) {
-  WriteFileAtomically(path, [&](std::ostream& out) {
-    out << value.dump(2, ' ', /*ensure_ascii=*/false,
-                      Json::error_handler_t::replace)
-        << '\n';
-  });
 }
 
 }  // namespace splitfusion

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/experiment/design.h"
-#include "splitfusion/lib/experiment/run_state.h"
 #include "splitfusion/lib/experiment/task_record.h"
-#include "splitfusion/lib/report/report_json.h"
 
 namespace splitfusion {
 namespace {

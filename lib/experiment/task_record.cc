@@ -8,13 +8,10 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/experiment/run_state.h"
-#include "splitfusion/lib/report/report_json.h"
+#include "splitfusion/lib/base/json_file.h"
 
 namespace splitfusion {
 namespace {
@@ -130,9 +127,7 @@ std::optional<TaskRecord> ReadTaskRecord(const std::string& folder) try {
 }
 
 void WriteTaskRecord(const std::string& folder, const TaskRecord& record) {
-  WriteFileAtomically(RecordPath(folder), [&](std::ostream& out) {
-    out << JsonText(RecordJson(record), 2) << '\n';
-  });
+  WriteJson(RecordPath(folder), RecordJson(record), 2);
 }
 
 std::string TimeText() {

@@ -100,9 +100,4 @@ Json ToJson(const FrameReport& report) {
           {"decisions", decisions}, {"surfaces", surfaces}};
 }
 
-std::string JsonText(const Json& value, int indent) {
-  return value.dump(indent, ' ', /*ensure_ascii=*/false,
-                    Json::error_handler_t::replace);
-}
-
 }  // namespace splitfusion

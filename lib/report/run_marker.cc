@@ -4,11 +4,10 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/report/run_paths.h"
 
 namespace splitfusion {
@@ -131,11 +130,7 @@ std::optional<RunMarker> ReadRunMarker(const std::string& folder) {
 }
 
 void WriteRunMarker(const std::string& folder, const RunMarker& marker) {
-  WriteFileAtomically(RunPaths(folder).Marker(), [&](std::ostream& out) {
-    // Names come from the user's files: what is no UTF-8 is replaced.
-    out << ToJson(marker).dump(1, ' ', false, Json::error_handler_t::replace)
-        << '\n';
-  });
+  WriteJson(RunPaths(folder).Marker(), ToJson(marker), 1);
 }
 
 std::map<std::string, RunFile> ListRunFiles(

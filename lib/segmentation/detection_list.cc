@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 
 #include "splitfusion/lib/base/brief_json.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/segmentation/class_names.h"
 
 namespace splitfusion {
@@ -17,8 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 Json ReadJson(const std::string& path) {
-  std::ifstream stream(path);
-  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  const Json json = ReadJsonOrNull<Json>(path);
   if (!json.is_array()) {
     throw InputError(path +
                      ": no JSON list: expected [{\"index\": 1, "

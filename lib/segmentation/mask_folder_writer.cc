@@ -2,11 +2,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/segmentation/detection_list.h"
 
@@ -72,11 +72,8 @@ OwnedFileList WrittenImages(const fs::path& folder) {
 }
 
 Settings ReadSettings(const fs::path& path) {
-  std::ifstream stream(path);
-  const nlohmann::json json =
-      nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
   try {
-    return json.get<Settings>();
+    return ReadJsonOrNull(path.string()).get<Settings>();
   } catch (const nlohmann::json::exception&) {
     throw InputError(path.string() +
                      ": expected the settings of a segmentation, a JSON "
@@ -133,9 +130,7 @@ MaskFolderWriter::MaskFolderWriter(const std::string& folder,
     throw InputError(folder + ": holds png files without " + kSettingsFile +
                      ": expected a new folder, or one of an earlier run");
   }
-  WriteFileAtomically(path.string(), [&](std::ostream& out) {
-    out << nlohmann::json(settings).dump(1) << '\n';
-  });
+  WriteJson(path.string(), nlohmann::json(settings), 1);
   RepairList();
   FindCompleteFrames();
 }

@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 
 namespace splitfusion {
 namespace {
@@ -41,11 +41,6 @@ bool IsSeen(const Vector3f& point, const Vector3f& normal,
   const int v = static_cast<int>(std::lround(pixel.y()));
   return u >= 0 && u < depth.cols && v >= 0 && v < depth.rows &&
          std::abs(depth(v, u) - point.z()) < kSeenTolerance;
-}
-
-void WriteJson(const std::string& path, const nlohmann::json& json) {
-  WriteFileAtomically(path,
-                      [&](std::ostream& out) { out << json.dump(1) << '\n'; });
 }
 
 }  // namespace
@@ -128,8 +123,8 @@ void GroundTruthWriter::WriteLabels() const {
                          {"rigid", instance.rigid},
                          {"moving", instance.moving}});
   }
-  WriteJson(directory_ + "/labels.json",
-            {{"background", 0}, {"instances", instances}});
+  WriteJson<nlohmann::json>(directory_ + "/labels.json",
+                            {{"background", 0}, {"instances", instances}}, 1);
 }
 
 void GroundTruthWriter::WriteTracks() const {
@@ -150,18 +145,19 @@ void GroundTruthWriter::WriteTracks() const {
 
 void GroundTruthWriter::WriteConfig() const {
   const SyntheticOptions& options = scene_.options();
-  WriteJson(directory_ + "/config.json",
-            {{"scene", ToString(options.scene)},
-             {"frames", options.frames},
-             {"width", options.width},
-             {"height", options.height},
-             {"seed", options.seed},
-             {"noise", options.noise},
-             {"exact_masks", options.exact_masks},
-             {"frame_rate", options.frame_rate},
-             {"camera_motion", options.camera_motion},
-             {"subject_speed", options.subject_speed},
-             {"track_points", options.track_points}});
+  WriteJson<nlohmann::json>(directory_ + "/config.json",
+                            {{"scene", ToString(options.scene)},
+                             {"frames", options.frames},
+                             {"width", options.width},
+                             {"height", options.height},
+                             {"seed", options.seed},
+                             {"noise", options.noise},
+                             {"exact_masks", options.exact_masks},
+                             {"frame_rate", options.frame_rate},
+                             {"camera_motion", options.camera_motion},
+                             {"subject_speed", options.subject_speed},
+                             {"track_points", options.track_points}},
+                            1);
 }
 
 }  // namespace splitfusion

@@ -4,12 +4,12 @@
 
 #include <filesystem>
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/pending_folder.h"
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/synthetic/ground_truth_writer.h"
@@ -56,8 +56,7 @@ void WriteDetections(const fs::path& folder, const std::string& stem,
     list.push_back(ToJson(detections[i], static_cast<int>(i) + 1));
   }
   WriteImage(folder / (stem + ".png"), indices);
-  WriteFileAtomically((folder / (stem + ".json")).string(),
-                      [&](std::ostream& out) { out << list.dump() << '\n'; });
+  WriteJson((folder / (stem + ".json")).string(), list);
 }
 
 class SequenceFolder {
