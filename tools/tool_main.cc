@@ -14,7 +14,7 @@
 #include "flag_names.h"
 #include "flagfile_check.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/base/freed_memory.h"
+#include "splitfusion/lib/base/process_memory.h"
 #include "standard_streams.h"
 
 DECLARE_bool(help);

@@ -13,7 +13,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/owned_files.h"
-#include "splitfusion/lib/base/peak_memory.h"
+#include "splitfusion/lib/base/process_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/report/html_report.h"
 #include "splitfusion/lib/report/iterations_csv.h"

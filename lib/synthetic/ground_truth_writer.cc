@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
+#include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {
 namespace {
@@ -60,10 +60,7 @@ void GroundTruthWriter::AddFrame(const SyntheticFrame& frame) {
   const std::string& stem = frame.frame.stem;
   const int index = frame.frame.index;
   trajectory_.push_back({frame.frame.timestamp, frame.world_from_camera});
-  const std::string label = directory_ + "/label/" + stem + ".png";
-  if (!cv::imwrite(label, frame.labels)) {
-    throw InputError(label + ": cannot be written (disk full?)");
-  }
+  WriteImage(directory_ + "/label/" + stem + ".png", frame.labels);
   for (const SyntheticInstance& instance : scene_.instances()) {
     if (!instance.moving || index % options_.mesh_every != 0) continue;
     WritePly(directory_ + "/mesh/inst" + std::to_string(instance.id) + "_" +

@@ -137,19 +137,5 @@ TEST(Pictures, RefuseOtherTypesAndSayWhatTheyExpected) {
   EXPECT_THROW(CompositePicture(cv::Mat(2, 2, CV_8UC3), cv::Mat()), InputError);
 }
 
-TEST(WritePng, NamesThePathItCannotWrite) {
-  const TemporaryFolder folder;
-  const std::string file = folder.Write("file", "");
-  try {
-    WritePng(file + "/picture.png", cv::Mat(2, 2, CV_8UC3));
-    FAIL() << "expected InputError";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("file/picture.png"),
-              std::string::npos);
-  }
-  EXPECT_THROW(WritePng(folder / "empty.png", cv::Mat()), InputError);
-  EXPECT_FALSE(folder.Has("empty.png"));
-}
-
 }  // namespace
 }  // namespace splitfusion

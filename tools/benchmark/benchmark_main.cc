@@ -13,8 +13,8 @@
 #include "benchmark_report.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/base/freed_memory.h"
 #include "splitfusion/lib/base/json_file.h"
+#include "splitfusion/lib/base/process_memory.h"
 
 namespace splitfusion {
 namespace {
