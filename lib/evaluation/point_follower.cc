@@ -1,13 +1,12 @@
 #include "splitfusion/lib/evaluation/point_follower.h"
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
 
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/sequence/image_file.h"
+#include "splitfusion/lib/evaluation/live_images.h"
 
 namespace splitfusion {
 namespace {
@@ -17,13 +16,9 @@ namespace {
 class FrameMask {
  public:
   FrameMask(const RecordedRun& run, const RecordedFrame& frame) {
-    const std::filesystem::path path =
-        std::filesystem::path(run.root) / "masks" / (frame.stem + ".png");
-    if (!run.camera || frame.stem.empty() || !std::filesystem::exists(path)) {
-      return;
-    }
+    if (!run.camera) return;
     camera_ = *run.camera;
-    labels_ = ReadLabelImage(path.string());
+    labels_ = ReadIds(run.root + "/masks", frame, camera_);
   }
 
   bool known() const { return !labels_.empty(); }
