@@ -19,16 +19,17 @@ using Json = nlohmann::ordered_json;
 constexpr int kFormatVersion = 1;
 constexpr char kTool[] = "sf_run";
 
-constexpr std::array<RunStatus, 4> kStatuses = {
-    RunStatus::kRunning, RunStatus::kComplete, RunStatus::kIncomplete,
-    RunStatus::kFailed};
+/// By RunStatus.
+constexpr std::array<const char*, 4> kStatusNames = {"running", "complete",
+                                                     "incomplete", "failed"};
 
 RunStatus ParseStatus(const std::string& text) {
-  for (const RunStatus status : kStatuses) {
-    if (ToString(status) == text) return status;
+  const auto found = std::find(kStatusNames.begin(), kStatusNames.end(), text);
+  if (found == kStatusNames.end()) {
+    throw InputError("status '" + text + "': expected running, complete, " +
+                     "incomplete or failed");
   }
-  throw InputError("status '" + text + "': expected running, complete, " +
-                   "incomplete or failed");
+  return static_cast<RunStatus>(found - kStatusNames.begin());
 }
 
 Json ToJson(const RunMarker& marker) {
@@ -93,17 +94,7 @@ RunFile Describe(const std::string& path) {
 }  // namespace
 
 std::string ToString(RunStatus status) {
-  switch (status) {
-    case RunStatus::kRunning:
-      return "running";
-    case RunStatus::kComplete:
-      return "complete";
-    case RunStatus::kIncomplete:
-      return "incomplete";
-    case RunStatus::kFailed:
-      break;
-  }
-  return "failed";
+  return kStatusNames[static_cast<std::size_t>(status)];
 }
 
 OwnedFileList RunMarker::Owned() const {
