@@ -137,9 +137,8 @@ void EvaluateMesh(const EvaluationOptions& options) {
 void FollowQueries(const RecordedRun& run,
                    const std::vector<AnimatedSurface>& surfaces,
                    const EvaluationOptions& options) {
-  const FollowedPoints followed =
-      FollowPoints(run, surfaces, ReadTrackPoints(FLAGS_track_query),
-                   options.tracks.frames, options.tracks.attachment);
+  const FollowedPoints followed = FollowPoints(
+      run, surfaces, ReadTrackPoints(FLAGS_track_query), options.tracks.frames);
   WriteTrackPoints(FLAGS_track_output, followed.points);
   std::cout << FLAGS_track_output << ": " << followed.attached << " points, "
             << followed.unattached << " that no surface is near to"
