@@ -143,6 +143,16 @@ std::vector<std::string> RemoveOwnedFiles(const std::string& folder,
   return changed;
 }
 
+void RemoveEmptyTree(const std::string& folder) {
+  std::vector<fs::path> folders = {folder};
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (fs::is_directory(entry.symlink_status())) folders.push_back(entry);
+  }
+  std::sort(folders.rbegin(), folders.rend());
+  std::error_code ignored;  // Those that are not empty stay.
+  for (const fs::path& path : folders) fs::remove(path, ignored);
+}
+
 void WriteOwnershipMarker(const std::string& path,
                           const OwnershipMarker& marker) {
   Json files = Json::array();

@@ -177,14 +177,6 @@ std::string Seconds(double seconds) {
   return cv::format(seconds < 10 ? "%.1f s" : "%.0f s", seconds);
 }
 
-void MakeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw InputError(folder + ": cannot be created (" + error.message() + ")");
-  }
-}
-
 }  // namespace
 
 void SweepOptions::Check() const {
