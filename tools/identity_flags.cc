@@ -3,7 +3,6 @@
 #include <gflags/gflags.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "splitfusion/lib/base/content_cache.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/number_text.h"
 #include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/experiment/settings.h"
@@ -205,12 +205,10 @@ RunIdentity IdentityFromFlags(const ImageFolderReader& reader,
 }
 
 std::string IdentityText(const RunIdentity& identity) {
-  return nlohmann::ordered_json{{"identity", identity.Hash()},
-                                {"identity_parts", identity.parts},
-                                {"outputs", identity.outputs}}
-             .dump(1, ' ', false,
-                   nlohmann::ordered_json::error_handler_t::replace) +
-         "\n";
+  const nlohmann::ordered_json json = {{"identity", identity.Hash()},
+                                       {"identity_parts", identity.parts},
+                                       {"outputs", identity.outputs}};
+  return JsonText(json, 1) + "\n";
 }
 
 }  // namespace splitfusion

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/evaluation/evaluation_json.h"
 #include "splitfusion/lib/evaluation/evaluation_table.h"
 #include "splitfusion/lib/evaluation/point_follower.h"
@@ -113,7 +113,7 @@ void Publish(const std::string& table, const nlohmann::ordered_json& json,
              const std::string& default_path) {
   std::cout << table;
   const std::string& path = FLAGS_output.empty() ? default_path : FLAGS_output;
-  if (!path.empty()) WriteJson(path, json);
+  if (!path.empty()) WriteJson(path, json, 2);
 }
 
 void EvaluateTrajectory(const EvaluationOptions& options) {
@@ -137,9 +137,8 @@ void EvaluateMesh(const EvaluationOptions& options) {
 void FollowQueries(const RecordedRun& run,
                    const std::vector<AnimatedSurface>& surfaces,
                    const EvaluationOptions& options) {
-  const FollowedPoints followed =
-      FollowPoints(run, surfaces, ReadTrackPoints(FLAGS_track_query),
-                   options.tracks.frames, options.tracks.attachment);
+  const FollowedPoints followed = FollowPoints(
+      run, surfaces, ReadTrackPoints(FLAGS_track_query), options.tracks.frames);
   WriteTrackPoints(FLAGS_track_output, followed.points);
   std::cout << FLAGS_track_output << ": " << followed.attached << " points, "
             << followed.unattached << " that no surface is near to"

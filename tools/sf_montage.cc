@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/experiment/settings.h"
 #include "splitfusion/lib/report/montage.h"
+#include "splitfusion/lib/sequence/image_file.h"
 #include "tool_main.h"
 
 DEFINE_string(pictures, "", "CAPTION:FILE,CAPTION:FILE,...");
@@ -46,11 +46,7 @@ void WritePicture(const std::string& path, const cv::Mat& picture) {
   const std::string type = std::filesystem::path(path).extension().string();
   CheckOption(type == ".jpg" || type == ".png", "output", "'" + path + "'",
               "a name ending in .jpg or .png");
-  WritePathAtomically(path, [&](const std::string& temporary) {
-    if (!cv::imwrite(temporary, picture, {cv::IMWRITE_JPEG_QUALITY, 85})) {
-      throw InputError(path + ": cannot be written");
-    }
-  });
+  WriteImage(path, picture, {cv::IMWRITE_JPEG_QUALITY, 85});
 }
 
 int Run() {

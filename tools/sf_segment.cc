@@ -14,13 +14,13 @@
 #include "progress_line.h"
 #include "sequence_flags.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/base/peak_memory.h"
+#include "splitfusion/lib/base/process_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/base/thread_limit.h"
 #include "splitfusion/lib/report/detection_picture.h"
-#include "splitfusion/lib/report/frame_pictures.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 #include "splitfusion/lib/segmentation/mask_folder_writer.h"
+#include "splitfusion/lib/sequence/image_file.h"
 #include "splitfusion/lib/sequence/image_folder_reader.h"
 #include "tool_main.h"
 
@@ -125,7 +125,8 @@ class Segmentation {
     const std::vector<InstanceMask> instances =
         writer_.Has(frame.stem) ? ReadBack(frame) : Segment(frame);
     if (FLAGS_overlays.empty()) return;
-    WritePng(OverlayPath(frame.stem), DetectionPicture(frame.color, instances));
+    WriteImage(OverlayPath(frame.stem),
+               DetectionPicture(frame.color, instances));
   }
 
   std::vector<InstanceMask> Segment(const Frame& frame) {

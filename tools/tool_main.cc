@@ -1,8 +1,11 @@
 #include "tool_main.h"
 
+#include <fcntl.h>
 #include <gflags/gflags.h>
 #include <glog/logging.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -14,8 +17,7 @@
 #include "flag_names.h"
 #include "flagfile_check.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/base/freed_memory.h"
-#include "standard_streams.h"
+#include "splitfusion/lib/base/process_memory.h"
 
 DECLARE_bool(help);
 DECLARE_bool(helpshort);
@@ -28,6 +30,22 @@ extern void (*gflags_exitfunc)(int);
 
 namespace splitfusion {
 namespace {
+
+/// Makes a program independent of who listens to it; the first call of main().
+/// Standard streams that are closed are opened on /dev/null: else the next file
+/// that is opened gets their number, and messages go into it. A reader that
+/// has gone (`2>&1 | head -1`) and a limit on the size of files (`ulimit -f`)
+/// no longer kill the program: writing fails instead.
+void SecureStandardStreams() {
+  // open() gives the lowest number that is free.
+  int descriptor = open("/dev/null", O_RDWR);
+  while (descriptor >= 0 && descriptor <= STDERR_FILENO) {
+    descriptor = open("/dev/null", O_RDWR);
+  }
+  if (descriptor >= 0) close(descriptor);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
 
 constexpr std::size_t kColumns = 80;
 constexpr std::size_t kTextColumn = 28;

@@ -8,13 +8,11 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 
 namespace splitfusion {
 namespace {
@@ -51,10 +49,8 @@ FileState StateOf(const std::string& path) {
 }
 
 Remembered Read(const std::string& path) {
-  std::ifstream stream(path);
-  const Json json = Json::parse(stream, nullptr, false);
   try {
-    return json.get<Remembered>();
+    return ReadJsonOrNull<Json>(path).get<Remembered>();
   } catch (const Json::exception&) {
     return {};  // None, or a damaged one: everything is read again.
   }
@@ -62,10 +58,7 @@ Remembered Read(const std::string& path) {
 
 void Write(const std::string& path, const Remembered& remembered) {
   try {
-    WriteFileAtomically(path, [&](std::ostream& out) {
-      out << Json(remembered)
-                 .dump(-1, ' ', false, Json::error_handler_t::replace);
-    });
+    WriteJson(path, Json(remembered));
   } catch (const InputError&) {
     // It costs time only.
   }

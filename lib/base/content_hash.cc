@@ -2,31 +2,22 @@
 
 #include <xxhash.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
 
-struct ContentHash::State {
-  State() : xxh(XXH3_createState()) { XXH3_128bits_reset(xxh); }
-  ~State() { XXH3_freeState(xxh); }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-
-  XXH3_state_t* xxh;
-};
-
-ContentHash::ContentHash() : state_(std::make_unique<State>()) {}
-ContentHash::~ContentHash() = default;
-ContentHash::ContentHash(ContentHash&&) noexcept = default;
-ContentHash& ContentHash::operator=(ContentHash&&) noexcept = default;
+ContentHash::ContentHash()
+    : state_(XXH3_createState(), [](auto* state) { XXH3_freeState(state); }) {
+  XXH3_128bits_reset(state_.get());
+}
 
 ContentHash& ContentHash::Add(const void* data, std::size_t bytes) {
-  XXH3_128bits_update(state_->xxh, data, bytes);
+  XXH3_128bits_update(state_.get(), data, bytes);
   return *this;
 }
 
@@ -36,12 +27,8 @@ ContentHash& ContentHash::Add(const std::string& text) {
 }
 
 std::string ContentHash::Hex() const {
-  const XXH128_hash_t hash = XXH3_128bits_digest(state_->xxh);
-  char text[33];
-  std::snprintf(text, sizeof(text), "%016llx%016llx",
-                static_cast<unsigned long long>(hash.high64),
-                static_cast<unsigned long long>(hash.low64));
-  return text;
+  const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
+  return cv::format("%016lx%016lx", hash.high64, hash.low64);
 }
 
 std::uint64_t Checksum64(const void* data, std::size_t bytes) {

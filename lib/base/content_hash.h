@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 
+struct XXH3_state_s;  // Of xxhash.h.
+
 namespace splitfusion {
 
 /// Hash of bytes that are given piece by piece: XXH3 with 128 bits. It finds
@@ -14,11 +16,6 @@ class ContentHash {
  public:
   /// Of nothing so far.
   ContentHash();
-  ~ContentHash();
-  /// What it was moved from must not be used.
-  ContentHash(ContentHash&&) noexcept;
-  /// As the constructor.
-  ContentHash& operator=(ContentHash&&) noexcept;
 
   /// Appends bytes.
   ContentHash& Add(const void* data, std::size_t bytes);
@@ -29,8 +26,7 @@ class ContentHash {
   std::string Hex() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<XXH3_state_s, void (*)(XXH3_state_s*)> state_;
 };
 
 /// XXH3 with 64 bits, for the checksums within binary files.

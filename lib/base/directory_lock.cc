@@ -23,6 +23,10 @@
 #include "splitfusion/lib/base/random_id.h"
 
 namespace splitfusion {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LockHolder, id, host, boot, pid,
+                                   process_start)
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,10 +71,8 @@ ProcessState StateOf(long pid) {
 
 LockHolder ThisProcess() {
   LockHolder self;
-  char host[256] = {};
-  gethostname(host, sizeof(host) - 1);
   self.id = RandomId();
-  self.host = host;
+  self.host = HostName();
   self.boot = FirstWord("/proc/sys/kernel/random/boot_id");
   self.pid = getpid();
   self.process_start = StateOf(self.pid).start;
@@ -78,13 +80,7 @@ LockHolder ThisProcess() {
 }
 
 std::string ToText(const LockHolder& holder) {
-  return Json{{"id", holder.id},
-              {"host", holder.host},
-              {"boot", holder.boot},
-              {"pid", holder.pid},
-              {"process_start", holder.process_start}}
-             .dump() +
-         "\n";
+  return Json(holder).dump() + "\n";
 }
 
 /// Empty for what is no file.
@@ -97,16 +93,8 @@ std::string ReadAll(const std::string& path) {
 
 /// Empty for what is no lock, such as one whose writer is still at it.
 std::optional<LockHolder> Parse(const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) return std::nullopt;
   try {
-    LockHolder holder;
-    holder.id = json.at("id").get<std::string>();
-    holder.host = json.at("host").get<std::string>();
-    holder.boot = json.at("boot").get<std::string>();
-    holder.pid = json.at("pid").get<long>();
-    holder.process_start = json.at("process_start").get<long long>();
-    return holder;
+    return Json::parse(text).get<LockHolder>();
   } catch (const Json::exception&) {
     return std::nullopt;
   }
@@ -175,6 +163,12 @@ void RemoveStale(const std::string& path, const std::string& text,
 }
 
 }  // namespace
+
+std::string HostName() {
+  char name[256] = {};
+  gethostname(name, sizeof(name) - 1);
+  return name;
+}
 
 std::string LockHolder::ToString() const {
   if (id.empty()) return "a lock without a name";

@@ -8,6 +8,9 @@
 
 namespace splitfusion {
 
+/// Name of this machine.
+std::string HostName();
+
 /// Who holds a lock.
 struct LockHolder {
   std::string id;    ///< Of this very lock.

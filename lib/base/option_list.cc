@@ -61,34 +61,32 @@ void Option::Check() const {
 Option& OptionList::Number(const std::string& name, int* value,
                            const Range& range, const std::string& unit,
                            const std::string& help) {
-  options_.push_back({prefix_ + name, value, range, {}, unit, help});
-  return options_.back();
+  return options_.emplace_back(
+      Option{prefix_ + name, value, range, {}, unit, help});
 }
 
 Option& OptionList::Number(const std::string& name, double* value,
                            const Range& range, const std::string& unit,
                            const std::string& help) {
-  options_.push_back({prefix_ + name, value, range, {}, unit, help});
-  return options_.back();
+  return options_.emplace_back(
+      Option{prefix_ + name, value, range, {}, unit, help});
 }
 
 Option& OptionList::Switch(const std::string& name, bool* value,
                            const std::string& help) {
-  options_.push_back({prefix_ + name, value, {}, {}, "", help});
-  return options_.back();
+  return options_.emplace_back(Option{prefix_ + name, value, {}, {}, "", help});
 }
 
 Option& OptionList::Choice(const std::string& name, std::string* value,
                            const std::vector<std::string>& choices,
                            const std::string& help) {
-  options_.push_back({prefix_ + name, value, {}, choices, "", help});
-  return options_.back();
+  return options_.emplace_back(
+      Option{prefix_ + name, value, {}, choices, "", help});
 }
 
 Option& OptionList::Text(const std::string& name, std::string* value,
                          const std::string& help) {
-  options_.push_back({prefix_ + name, value, {}, {}, "", help});
-  return options_.back();
+  return options_.emplace_back(Option{prefix_ + name, value, {}, {}, "", help});
 }
 
 void OptionList::Demand(bool holds, const std::string& name,

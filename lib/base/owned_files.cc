@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 
 namespace splitfusion {
 namespace {
@@ -145,6 +143,16 @@ std::vector<std::string> RemoveOwnedFiles(const std::string& folder,
   return changed;
 }
 
+void RemoveEmptyTree(const std::string& folder) {
+  std::vector<fs::path> folders = {folder};
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (fs::is_directory(entry.symlink_status())) folders.push_back(entry);
+  }
+  std::sort(folders.rbegin(), folders.rend());
+  std::error_code ignored;  // Those that are not empty stay.
+  for (const fs::path& path : folders) fs::remove(path, ignored);
+}
+
 void WriteOwnershipMarker(const std::string& path,
                           const OwnershipMarker& marker) {
   Json files = Json::array();
@@ -155,14 +163,12 @@ void WriteOwnershipMarker(const std::string& path,
                      {"program", marker.program},
                      {"id", marker.id},
                      {"files", files}};
-  WriteFileAtomically(path,
-                      [&](std::ostream& out) { out << json.dump(1) << '\n'; });
+  WriteJson(path, json, 1);
 }
 
 std::optional<OwnershipMarker> ReadOwnershipMarker(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) return std::nullopt;
-  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!fs::exists(path)) return std::nullopt;
+  const Json json = ReadJsonOrNull(path);
   OwnershipMarker marker;
   try {
     if (json.at("format_version").get<int>() != kFormatVersion) {

@@ -43,6 +43,9 @@ std::vector<std::string> ForeignFiles(const std::string& folder,
 std::vector<std::string> RemoveOwnedFiles(const std::string& folder,
                                           const OwnedFileList& files);
 
+/// Removes a folder and those below it as far as they hold no file.
+void RemoveEmptyTree(const std::string& folder);
+
 /// The marker that a program leaves in a folder: what of it is its own. It is
 /// not in its own list.
 struct OwnershipMarker {

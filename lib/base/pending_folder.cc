@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <stdio.h>
 
-#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -56,17 +55,6 @@ void ExchangeInSteps(const fs::path& a, const fs::path& b) {
 void Move(const std::string& file, const fs::path& from, const fs::path& to) {
   fs::create_directories((to / file).parent_path());
   fs::rename(from / file, to / file);
-}
-
-/// Folders without a file, deepest first.
-void RemoveEmptyTree(const fs::path& folder) {
-  std::vector<fs::path> folders = {folder};
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (fs::is_directory(entry.symlink_status())) folders.push_back(entry);
-  }
-  std::sort(folders.rbegin(), folders.rend());
-  std::error_code ignored;
-  for (const fs::path& path : folders) fs::remove(path, ignored);
 }
 
 }  // namespace
@@ -178,7 +166,7 @@ void PendingFolder::RemoveOld(const std::vector<std::string>& kept) {
   const fs::path old = std::exchange(temporary_, fs::path());
   for (const std::string& file : kept) Move(file, old, target_);
   RemoveOwnedFiles(old.string(), old_->files);
-  RemoveEmptyTree(old);
+  RemoveEmptyTree(old.string());
 }
 
 void PendingFolder::Fail(const std::string& reason) const {

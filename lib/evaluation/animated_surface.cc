@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "splitfusion/lib/visibility/seen_triangles.h"
@@ -73,12 +74,8 @@ TriangleMesh AnimatedSurface::MeshAt(int frame) const {
 
 std::vector<AnimatedSurface> AnimateSurfaces(
     std::vector<RecordedSurface> surfaces) {
-  std::vector<AnimatedSurface> animated;
-  animated.reserve(surfaces.size());
-  for (RecordedSurface& surface : surfaces) {
-    animated.emplace_back(std::move(surface));
-  }
-  return animated;
+  return {std::make_move_iterator(surfaces.begin()),
+          std::make_move_iterator(surfaces.end())};
 }
 
 }  // namespace splitfusion

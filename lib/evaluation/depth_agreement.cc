@@ -33,18 +33,6 @@ void AddPixel(float live, float model, int shown, Tally* tally) {
   }
 }
 
-/// Pixels with depth of every surface of the mask.
-std::map<int, int> CountPixels(const cv::Mat_<float>& live,
-                               const cv::Mat_<std::uint16_t>& mask) {
-  std::map<int, int> counts;
-  for (int v = 0; v < live.rows; ++v) {
-    for (int u = 0; u < live.cols; ++u) {
-      if (live(v, u) > 0) ++counts[mask(v, u)];
-    }
-  }
-  return counts;
-}
-
 /// The surfaces that were tracked in a frame.
 std::vector<const AnimatedSurface*> TrackedIn(
     int frame, const std::vector<AnimatedSurface>& surfaces) {
@@ -104,14 +92,12 @@ class Comparer {
   std::map<int, Tally*> SurfacesThatCount(int frame,
                                           const cv::Mat_<float>& depth,
                                           const cv::Mat_<std::uint16_t>& mask) {
-    const std::map<int, int> pixels = CountPixels(depth, mask);
+    std::map<int, int> pixels = CountPixels(mask, &depth);
     std::map<int, Tally*> counting;
     for (const AnimatedSurface& surface : surfaces_) {
       const int id = surface.recorded().id;
       const bool tracked = surface.Tracked(frame);
-      const auto found = pixels.find(id);
-      const int count = found != pixels.end() ? found->second : 0;
-      if (!tracked && count <= plain_view_pixels_) continue;
+      if (!tracked && pixels[id] <= plain_view_pixels_) continue;
       Tally& tally = tallies_.at(id);
       ++(tracked ? tally.agreement.frames : tally.agreement.frames_missing);
       counting[id] = &tally;

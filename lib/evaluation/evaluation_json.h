@@ -19,11 +19,6 @@ nlohmann::ordered_json ToJson(const TrajectoryError& error);
 /// The keys `accuracy`, `completeness` and `f_score`.
 nlohmann::ordered_json ToJson(const SurfaceError& error);
 
-/// Writes a value, indented, through a temporary name.
-///
-/// @throw InputError if the file cannot be written.
-void WriteJson(const std::string& path, const nlohmann::ordered_json& value);
-
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_EVALUATION_EVALUATION_JSON_H_

@@ -1,7 +1,7 @@
 #include "splitfusion/lib/evaluation/evaluation_table.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
 
@@ -21,9 +21,7 @@ std::string Padded(std::string name) {
 }
 
 std::string Number(double value, const char* format) {
-  char text[32];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
+  return cv::format(format, value);
 }
 
 std::string Head(const std::string& title,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -10,23 +9,14 @@
 #include <tuple>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/evaluation/live_images.h"
 #include "splitfusion/lib/evaluation/model_view.h"
-#include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {
 namespace {
 
 /// Samples that suffice to tell which surface is which instance.
 constexpr int kMatchingSamples = 2000;
-
-void CheckSize(const std::string& path, const cv::Size& size,
-               const PinholeCamera& camera) {
-  const cv::Size expected(camera.width, camera.height);
-  if (size != expected) {
-    throw InputError(path + ": " + ToString(size) + " pixels: expected " +
-                     ToString(expected));
-  }
-}
 
 SurfaceError CompareAt(const AnimatedSurface& surface,
                        const TrueOccasion& occasion,
@@ -74,14 +64,11 @@ ViewError CompareView(const RecordedRun& run,
                       const std::string& label_folder,
                       const TrueOccasion& occasion, double max_distance) {
   ViewError error;
-  const std::filesystem::path path =
-      std::filesystem::path(label_folder) / (occasion.frame->stem + ".png");
-  if (!run.camera || label_folder.empty() || !std::filesystem::exists(path)) {
-    return error;
-  }
-  const cv::Mat_<std::uint16_t> labels = ReadLabelImage(path.string());
+  if (!run.camera) return error;
   const PinholeCamera& camera = *run.camera;
-  CheckSize(path.string(), labels.size(), camera);
+  const cv::Mat_<std::uint16_t> labels =
+      ReadIds(label_folder, *occasion.frame, camera);
+  if (labels.empty()) return error;
   const cv::Mat_<float> depth =
       RenderModelDepth(surfaces, occasion.frame->index, camera);
   std::vector<Eigen::Vector3f> points;

@@ -33,6 +33,27 @@ void CheckSize(const std::string& path, const cv::Size& size,
 
 }  // namespace
 
+cv::Mat_<std::uint16_t> ReadIds(const std::string& folder,
+                                const RecordedFrame& frame,
+                                const PinholeCamera& camera) {
+  const fs::path path = fs::path(folder) / (frame.stem + ".png");
+  if (folder.empty() || frame.stem.empty() || !fs::exists(path)) return {};
+  const cv::Mat_<std::uint16_t> ids = ReadLabelImage(path.string());
+  CheckSize(path.string(), ids.size(), camera);
+  return ids;
+}
+
+std::map<int, int> CountPixels(const cv::Mat_<std::uint16_t>& ids,
+                               const cv::Mat_<float>* live) {
+  std::map<int, int> counts;
+  for (int v = 0; v < ids.rows; ++v) {
+    for (int u = 0; u < ids.cols; ++u) {
+      if (live == nullptr || (*live)(v, u) > 0) ++counts[ids(v, u)];
+    }
+  }
+  return counts;
+}
+
 LiveImages::LiveImages(const RecordedRun& run)
     : run_(run.root),
       sequence_(run.sequence),
@@ -65,21 +86,11 @@ cv::Mat_<float> LiveImages::FilteredDepth(const RecordedFrame& frame) const {
   return FilterDepth(Depth(frame), filter_);
 }
 
-cv::Mat_<std::uint16_t> LiveImages::ReadIds(const std::string& path) const {
-  const cv::Mat_<std::uint16_t> ids = ReadLabelImage(path);
-  CheckSize(path, ids.size(), camera());
-  return ids;
-}
-
 cv::Mat_<std::uint16_t> LiveImages::Mask(const RecordedFrame& frame) const {
-  return ReadIds((fs::path(run_) / "masks" / (frame.stem + ".png")).string());
-}
-
-cv::Mat_<std::uint16_t> LiveImages::Labels(const std::string& folder,
-                                           const RecordedFrame& frame) const {
-  const fs::path path = fs::path(folder) / (frame.stem + ".png");
-  if (folder.empty() || frame.stem.empty() || !fs::exists(path)) return {};
-  return ReadIds(path.string());
+  const std::string folder = (fs::path(run_) / "masks").string();
+  const cv::Mat_<std::uint16_t> mask = ReadIds(folder, frame, camera());
+  if (!mask.empty()) return mask;
+  throw InputError(folder + "/" + frame.stem + ".png: cannot be opened");
 }
 
 }  // namespace splitfusion

@@ -1,6 +1,8 @@
 #ifndef SPLITFUSION_LIB_EVALUATION_LIVE_IMAGES_H_
 #define SPLITFUSION_LIB_EVALUATION_LIVE_IMAGES_H_
 
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
@@ -10,6 +12,17 @@
 #include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {
+
+/// STEM.png of a folder of images of ids, HxW; empty if there is no such file.
+///
+/// @throw InputError if it is broken, or not of the camera's size.
+cv::Mat_<std::uint16_t> ReadIds(const std::string& folder,
+                                const RecordedFrame& frame,
+                                const PinholeCamera& camera);
+
+/// Pixels of every id, those with depth if `live` is not null.
+std::map<int, int> CountPixels(const cv::Mat_<std::uint16_t>& ids,
+                               const cv::Mat_<float>* live);
 
 /// What the camera measured in the frames of a run: the depth images of the
 /// sequence that options.flags names, and the masks of the run. Images are read
@@ -39,15 +52,7 @@ class LiveImages {
   /// @throw InputError if it is missing or broken.
   cv::Mat_<std::uint16_t> Mask(const RecordedFrame& frame) const;
 
-  /// STEM.png of a folder of label images, HxW; empty if there is no such file.
-  ///
-  /// @throw InputError if it is broken.
-  cv::Mat_<std::uint16_t> Labels(const std::string& folder,
-                                 const RecordedFrame& frame) const;
-
  private:
-  cv::Mat_<std::uint16_t> ReadIds(const std::string& path) const;
-
   std::string run_;
   std::string sequence_;
   DepthFilterOptions filter_;

@@ -22,19 +22,6 @@ struct FrameInspection {
   std::map<int, InstanceSighting> sightings;  // By instance.
 };
 
-/// Pixels of every label, those with depth if `live` is not null.
-std::map<int, int> CountPixels(const cv::Mat_<std::uint16_t>& labels,
-                               const cv::Mat_<float>* live) {
-  std::map<int, int> counts;
-  for (int v = 0; v < labels.rows; ++v) {
-    for (int u = 0; u < labels.cols; ++u) {
-      if (labels(v, u) == 0) continue;
-      if (live == nullptr || (*live)(v, u) > 0) ++counts[labels(v, u)];
-    }
-  }
-  return counts;
-}
-
 /// Looks at single frames.
 class Inspector {
  public:
@@ -50,7 +37,7 @@ class Inspector {
     cv::Mat_<std::uint16_t> labels;
     if (live_ != nullptr) {
       depth = live_->Depth(frame);
-      labels = live_->Labels(labels_.folder, frame);
+      labels = ReadIds(labels_.folder, frame, live_->camera());
       if (!labels.empty()) AddSightings(frame, depth, labels, &result);
     }
     for (const AnimatedSurface& surface : surfaces_) {
@@ -68,7 +55,7 @@ class Inspector {
     const RecordedFrame* before = run_.Find(frame.index - kEntryFrames);
     cv::Mat_<std::uint16_t> labels_before;
     if (before != nullptr) {
-      labels_before = live_->Labels(labels_.folder, *before);
+      labels_before = ReadIds(labels_.folder, *before, live_->camera());
     }
     std::map<int, int> earlier = CountPixels(labels_before, nullptr);
     for (const int instance : labels_.instances) {

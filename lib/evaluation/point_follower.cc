@@ -1,13 +1,13 @@
 #include "splitfusion/lib/evaluation/point_follower.h"
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
 
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/sequence/image_file.h"
+#include "splitfusion/lib/evaluation/live_images.h"
+#include "splitfusion/lib/evaluation/surface_attachment.h"
 
 namespace splitfusion {
 namespace {
@@ -17,13 +17,9 @@ namespace {
 class FrameMask {
  public:
   FrameMask(const RecordedRun& run, const RecordedFrame& frame) {
-    const std::filesystem::path path =
-        std::filesystem::path(run.root) / "masks" / (frame.stem + ".png");
-    if (!run.camera || frame.stem.empty() || !std::filesystem::exists(path)) {
-      return;
-    }
+    if (!run.camera) return;
     camera_ = *run.camera;
-    labels_ = ReadLabelImage(path.string());
+    labels_ = ReadIds(run.root + "/masks", frame, camera_);
   }
 
   bool known() const { return !labels_.empty(); }
@@ -52,9 +48,8 @@ struct FollowedPoint {
 class Follower {
  public:
   Follower(const RecordedRun& run, const std::vector<AnimatedSurface>& surfaces,
-           const std::vector<TrackPoint>& queries,
-           const AttachmentOptions& options)
-      : run_(run), surfaces_(surfaces), options_(options) {
+           const std::vector<TrackPoint>& queries)
+      : run_(run), surfaces_(surfaces) {
     for (const TrackPoint& query : queries) {
       points_.push_back({query.position, std::nullopt});
     }
@@ -74,7 +69,7 @@ class Follower {
     }
     if (present.empty()) return false;
     const FrameMask mask(run_, frame);
-    const SurfaceAttacher attacher(present, frame.index, options_);
+    const SurfaceAttacher attacher(present, frame.index);
     for (FollowedPoint& point : points_) {
       const bool held =
           point.attachment && point.attachment->surface->recorded().id != 0;
@@ -82,8 +77,7 @@ class Follower {
       const std::optional<Attachment> found =
           attacher.Attach(point.position, mask.IdAt(point.position));
       if (!found) continue;
-      if (point.attachment &&
-          found->offset.norm() > options_.foreground_distance) {
+      if (point.attachment && found->offset.norm() > kForegroundDistance) {
         continue;
       }
       point.attachment = found;
@@ -126,7 +120,6 @@ class Follower {
 
   const RecordedRun& run_;
   const std::vector<AnimatedSurface>& surfaces_;
-  AttachmentOptions options_;
   std::vector<FollowedPoint> points_;
 };
 
@@ -156,12 +149,12 @@ const RecordedFrame& QueryFrame(const RecordedRun& run,
 
 FollowedPoints FollowPoints(const RecordedRun& run,
                             const std::vector<AnimatedSurface>& surfaces,
-                            const std::vector<TrackPoint>& queries, int frames,
-                            const AttachmentOptions& options) {
+                            const std::vector<TrackPoint>& queries,
+                            int frames) {
   FollowedPoints result;
   if (queries.empty()) return result;
   const RecordedFrame* frame = &QueryFrame(run, queries);
-  Follower follower(run, surfaces, queries, options);
+  Follower follower(run, surfaces, queries);
   result.by_mask = follower.Attach(*frame, /*only_newborn=*/false);
   Append(queries, frame->index, follower, &result);
   const int last = frame->index + frames;

@@ -5,7 +5,6 @@
 
 #include "splitfusion/lib/evaluation/animated_surface.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
-#include "splitfusion/lib/evaluation/surface_attachment.h"
 #include "splitfusion/lib/evaluation/track_point.h"
 
 namespace splitfusion {
@@ -34,8 +33,7 @@ struct FollowedPoints {
 ///     run does not have, or if a mask is broken.
 FollowedPoints FollowPoints(const RecordedRun& run,
                             const std::vector<AnimatedSurface>& surfaces,
-                            const std::vector<TrackPoint>& queries, int frames,
-                            const AttachmentOptions& options = {});
+                            const std::vector<TrackPoint>& queries, int frames);
 
 }  // namespace splitfusion
 

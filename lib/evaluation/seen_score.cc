@@ -24,17 +24,6 @@ constexpr unsigned kSeenSeed = 5;
 /// Surface id -> scores by frame.
 using Scores = std::map<int, std::map<int, SeenFrame>>;
 
-int LivePixels(const cv::Mat_<std::uint16_t>& labels,
-               const cv::Mat_<float>& depth, int instance) {
-  int count = 0;
-  for (int v = 0; v < labels.rows; ++v) {
-    for (int u = 0; u < labels.cols; ++u) {
-      count += labels(v, u) == instance && depth(v, u) > 0 ? 1 : 0;
-    }
-  }
-  return count;
-}
-
 /// Whether the live images show a point (camera frame) of an instance.
 bool IsShown(const Eigen::Vector3d& point, int instance,
              const PinholeCamera& camera, const cv::Mat_<std::uint16_t>& labels,
@@ -83,12 +72,12 @@ class Witness {
 
   void Add(const TrueOccasion& occasion) {
     const cv::Mat_<std::uint16_t> labels =
-        live_.Labels(label_folder_, *occasion.frame);
+        ReadIds(label_folder_, *occasion.frame, live_.camera());
     if (labels.empty()) return;
     const cv::Mat_<float> depth = live_.Depth(*occasion.frame);
     Look(occasion, labels, depth);
-    began_ = began_ ||
-             LivePixels(labels, depth, occasion.instance) > plain_view_pixels_;
+    began_ = began_ || CountPixels(labels, &depth)[occasion.instance] >
+                           plain_view_pixels_;
     if (!began_) return;
     const std::vector<double> weights = SeenWeights(occasion.truth.mesh);
     const std::vector<Eigen::Vector3f> seen =

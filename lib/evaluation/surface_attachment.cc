@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "splitfusion/lib/base/error.h"
-
 namespace splitfusion {
 namespace {
 
@@ -24,12 +22,6 @@ std::vector<Eigen::Vector3i> FacingTriangles(
 
 }  // namespace
 
-void AttachmentOptions::Check() const {
-  CheckOption(max_distance > 0, "max_distance", max_distance, "metres > 0");
-  CheckOption(foreground_distance >= 0, "foreground_distance",
-              foreground_distance, "metres >= 0");
-}
-
 Eigen::Vector3d Attachment::PositionAt(const WarpField& warp) const {
   const NodeMotion motion = warp.BlendMotion(skinning, canonical);
   return canonical.cast<double>() + motion.translation +
@@ -37,10 +29,7 @@ Eigen::Vector3d Attachment::PositionAt(const WarpField& warp) const {
 }
 
 SurfaceAttacher::SurfaceAttacher(
-    const std::vector<const AnimatedSurface*>& surfaces, int frame,
-    AttachmentOptions options)
-    : options_(options) {
-  options_.Check();
+    const std::vector<const AnimatedSurface*>& surfaces, int frame) {
   for (const AnimatedSurface* surface : surfaces) {
     const std::vector<Eigen::Vector3f> vertices = surface->VerticesAt(frame);
     std::vector<Eigen::Vector3i> facing =
@@ -58,13 +47,13 @@ std::optional<Attachment> SurfaceAttacher::Attach(const Eigen::Vector3d& point,
   int best_rank = 3;
   for (const Candidate& candidate : candidates_) {
     const SurfacePoint nearest = candidate.tree.Closest(
-        point.cast<float>(), static_cast<float>(options_.max_distance));
+        point.cast<float>(), static_cast<float>(kAttachmentDistance));
     if (nearest.triangle < 0) continue;
     const int id = candidate.surface->recorded().id;
     int rank = 2;
     if (preferred_id != 0 && id == preferred_id) {
       rank = 0;
-    } else if (id != 0 && nearest.distance <= options_.foreground_distance) {
+    } else if (id != 0 && nearest.distance <= kForegroundDistance) {
       rank = 1;
     }
     if (rank < best_rank ||

@@ -12,14 +12,9 @@
 namespace splitfusion {
 
 /// How far points may be from the surface they are attached to, metres.
-struct AttachmentOptions {
-  double max_distance = 0.10;         ///< From any surface.
-  double foreground_distance = 0.03;  ///< A surface other than the background
-                                      ///< that is this near goes first.
-
-  /// @throw InputError if a value is out of its range.
-  void Check() const;
-};
+constexpr double kAttachmentDistance = 0.10;
+/// A surface other than the background that is this near goes first, metres.
+constexpr double kForegroundDistance = 0.03;
 
 /// A point tied to a surface.
 struct Attachment {
@@ -40,7 +35,7 @@ class SurfaceAttacher {
   /// Takes the surfaces (not owned; each must have motions for `frame`) as they
   /// lie in `frame`, those triangles that face the camera.
   SurfaceAttacher(const std::vector<const AnimatedSurface*>& surfaces,
-                  int frame, AttachmentOptions options);
+                  int frame);
 
   /// Attaches a point (camera frame, metres) to the nearest point of the
   /// surface with id `preferred_id` if that is not 0 and near enough, else of a
@@ -59,7 +54,6 @@ class SurfaceAttacher {
   static Attachment Tie(const Candidate& candidate, const SurfacePoint& nearest,
                         const Eigen::Vector3d& point);
 
-  AttachmentOptions options_;
   std::vector<Candidate> candidates_;
 };
 

@@ -112,7 +112,6 @@ void TrackOptions::Check() const {
   }
   CheckOption(frames >= 1 && frames <= 1000000, "track_frames", frames,
               "1..1000000");
-  attachment.Check();
 }
 
 std::vector<TrackEvaluation> EvaluateTracks(
@@ -133,9 +132,8 @@ std::vector<TrackEvaluation> EvaluateTracks(
       skipped->push_back("track error: " + obstacle);
       continue;
     }
-    const FollowedPoints followed =
-        FollowPoints(run, surfaces, tracks.Queries(frame, poses[frame]),
-                     reference.frames, options.attachment);
+    const FollowedPoints followed = FollowPoints(
+        run, surfaces, tracks.Queries(frame, poses[frame]), reference.frames);
     result.push_back({CompareTracks(followed.points, tracks, poses, frame),
                       followed.attached, followed.unattached,
                       followed.by_mask});

@@ -7,7 +7,6 @@
 #include "splitfusion/lib/evaluation/animated_surface.h"
 #include "splitfusion/lib/evaluation/ground_truth.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
-#include "splitfusion/lib/evaluation/surface_attachment.h"
 #include "splitfusion/lib/evaluation/track_error.h"
 
 namespace splitfusion {
@@ -19,8 +18,7 @@ struct TrackOptions {
   /// and of the truth. In a shorter run half of it is followed, or less if no
   /// point is visible so early.
   std::vector<int> references;
-  int frames = 30;               ///< Frames through which they are followed.
-  AttachmentOptions attachment;  ///< Of track points.
+  int frames = 30;  ///< Frames through which they are followed.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;

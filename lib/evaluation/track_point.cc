@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
+#include <opencv2/core.hpp>
 #include <sstream>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
 
 namespace splitfusion {
 namespace {
@@ -23,19 +23,15 @@ bool ParseRow(std::string line, TrackPoint* point) {
 }  // namespace
 
 std::vector<TrackPoint> ReadTrackPoints(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(path + ": cannot be opened");
   std::vector<TrackPoint> points;
-  std::string line;
   bool head_allowed = true;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    if (line.empty() || line[0] == '#' || line == "\r") continue;
+  for (const TextLine& line : ReadTextLines(path)) {
     TrackPoint point;
-    if (ParseRow(line, &point)) {
+    if (ParseRow(line.text, &point)) {
       points.push_back(point);
     } else if (!head_allowed) {
-      throw InputError(path + ":" + std::to_string(number) +
-                       ": expected 'id,frame,x,y,z', found '" + line + "'");
+      throw InputError(line.place + ": expected 'id,frame,x,y,z', found '" +
+                       line.text + "'");
     }
     head_allowed = false;
   }
@@ -50,11 +46,9 @@ void WriteTrackPoints(const std::string& path,
   WriteFileAtomically(path, [&](std::ostream& out) {
     out << "id,frame,x,y,z\n";
     for (const TrackPoint& point : points) {
-      char row[128];
-      std::snprintf(row, sizeof(row), "%d,%d,%.6f,%.6f,%.6f\n", point.id,
-                    point.frame, point.position.x(), point.position.y(),
-                    point.position.z());
-      out << row;
+      const Eigen::Vector3d& p = point.position;
+      out << cv::format("%d,%d,%.6f,%.6f,%.6f\n", point.id, point.frame, p.x(),
+                        p.y(), p.z());
     }
   });
 }

@@ -3,8 +3,8 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
 #include <set>
-#include <sstream>
 #include <tuple>
 
 #include "splitfusion/lib/base/error.h"
@@ -114,12 +114,10 @@ RelativePoseError RelativeError(const MatchedPoses& poses, int step) {
 void CheckMatches(const Trajectory& estimate, const Trajectory& truth,
                   std::size_t matches, double tolerance) {
   if (matches >= kMinMatches) return;
-  std::ostringstream message;
-  message << matches << " of " << estimate.size()
-          << " estimated poses match one of the " << truth.size()
-          << " true poses within " << tolerance << " s: expected at least "
-          << kMinMatches;
-  throw InputError(message.str());
+  throw InputError(cv::format(
+      "%zu of %zu estimated poses match one of the %zu true poses "
+      "within %g s: expected at least %d",
+      matches, estimate.size(), truth.size(), tolerance, kMinMatches));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "splitfusion/lib/evaluation/true_occasion.h"
 
 #include <cmath>
-#include <optional>
 
 #include "splitfusion/lib/evaluation/animated_surface.h"
 
@@ -11,26 +10,18 @@ namespace {
 /// Of a true mesh or pose from a frame, seconds.
 constexpr double kMaxTimeDifference = 0.02;
 
-const RecordedFrame* FrameAt(const RecordedRun& run, double timestamp) {
-  const RecordedFrame* best = nullptr;
-  double best_difference = kMaxTimeDifference;
-  for (const RecordedFrame& frame : run.frames) {
-    const double difference = std::abs(frame.pose.timestamp - timestamp);
-    if (difference <= best_difference) {
-      best = &frame;
-      best_difference = difference;
-    }
-  }
-  return best;
-}
+double TimeOf(const RecordedFrame& frame) { return frame.pose.timestamp; }
+double TimeOf(const TimedPose& pose) { return pose.timestamp; }
 
-std::optional<Rigid3d> TruePoseAt(const GroundTruth& truth, double timestamp) {
-  std::optional<Rigid3d> best;
+/// The item nearest in time, the last of several; null if none is near.
+template <typename Item>
+const Item* FindAt(const std::vector<Item>& items, double timestamp) {
+  const Item* best = nullptr;
   double best_difference = kMaxTimeDifference;
-  for (const TimedPose& pose : truth.trajectory) {
-    const double difference = std::abs(pose.timestamp - timestamp);
+  for (const Item& item : items) {
+    const double difference = std::abs(TimeOf(item) - timestamp);
     if (difference <= best_difference) {
-      best = pose.world_from_camera;
+      best = &item;
       best_difference = difference;
     }
   }
@@ -43,11 +34,11 @@ std::vector<TrueOccasion> FindOccasions(const RecordedRun& run,
                                         const GroundTruth& truth) {
   std::vector<TrueOccasion> occasions;
   for (const PosedMeshFile& file : truth.posed_meshes) {
-    const RecordedFrame* frame = FrameAt(run, file.timestamp);
-    const auto pose = TruePoseAt(truth, file.timestamp);
-    if (frame == nullptr || !pose) continue;
-    occasions.push_back(
-        {file.instance, frame, *pose, ReadTrueSurface(file.path)});
+    const RecordedFrame* frame = FindAt(run.frames, file.timestamp);
+    const TimedPose* pose = FindAt(truth.trajectory, file.timestamp);
+    if (frame == nullptr || pose == nullptr) continue;
+    occasions.push_back({file.instance, frame, pose->world_from_camera,
+                         ReadTrueSurface(file.path)});
   }
   return occasions;
 }

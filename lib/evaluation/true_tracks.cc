@@ -1,10 +1,7 @@
 #include "splitfusion/lib/evaluation/true_tracks.h"
 
-#include <algorithm>
-#include <array>
-#include <cstring>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "splitfusion/lib/base/error.h"
 
@@ -22,10 +19,9 @@ struct StoredPoint {
 };
 
 template <typename T>
-void Copy(const std::vector<char>& bytes, std::size_t* offset, std::size_t n,
-          T* values) {
-  std::memcpy(values, bytes.data() + *offset, n * sizeof(T));
-  *offset += n * sizeof(T);
+void ReadValues(std::istream* in, std::vector<T>* values) {
+  in->read(reinterpret_cast<char*>(values->data()),
+           static_cast<std::streamsize>(values->size() * sizeof(T)));
 }
 
 }  // namespace
@@ -33,37 +29,33 @@ void Copy(const std::vector<char>& bytes, std::size_t* offset, std::size_t n,
 TrueTracks TrueTracks::Read(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path + ": cannot be opened");
-  const std::vector<char> bytes(std::istreambuf_iterator<char>(stream), {});
-  std::array<std::uint32_t, 4> head{};
-  std::size_t offset = 0;
-  if (bytes.size() >= sizeof(head)) Copy(bytes, &offset, 4, head.data());
-  if (head[0] != kMagic || head[1] != 1) {
+  std::vector<std::uint32_t> head(4);
+  ReadValues(&stream, &head);
+  if (!stream || head[0] != kMagic || head[1] != 1) {
     throw InputError(path +
                      ": expected a track file (magic 0x4b525431, "
                      "version 1)");
   }
   const std::size_t points = head[3];
   const std::size_t entries = std::size_t{head[2]} * points;
-  const std::size_t expected =
-      sizeof(head) + points * sizeof(StoredPoint) + entries * 13;
-  if (bytes.size() != expected) {
-    throw InputError(path + ": " + std::to_string(bytes.size()) +
-                     " bytes: expected " + std::to_string(expected));
+  const std::size_t expected = sizeof(head[0]) * head.size() +
+                               points * sizeof(StoredPoint) +
+                               entries * (sizeof(Eigen::Vector3f) + 1);
+  const std::uintmax_t bytes = std::filesystem::file_size(path);
+  if (bytes != expected) {
+    throw InputError(path + ": " + std::to_string(bytes) + " bytes: expected " +
+                     std::to_string(expected));
   }
   TrueTracks tracks;
   tracks.frames_ = static_cast<int>(head[2]);
   tracks.points_ = static_cast<int>(points);
   std::vector<StoredPoint> stored(points);
-  Copy(bytes, &offset, points, stored.data());
+  ReadValues(&stream, &stored);
   for (const StoredPoint& p : stored) tracks.instances_.push_back(p.instance);
-  std::vector<float> coordinates(3 * entries);
-  Copy(bytes, &offset, coordinates.size(), coordinates.data());
-  for (std::size_t i = 0; i < entries; ++i) {
-    tracks.positions_.emplace_back(coordinates[3 * i], coordinates[3 * i + 1],
-                                   coordinates[3 * i + 2]);
-  }
+  tracks.positions_.resize(entries);
+  ReadValues(&stream, &tracks.positions_);
   tracks.visible_.resize(entries);
-  Copy(bytes, &offset, entries, tracks.visible_.data());
+  ReadValues(&stream, &tracks.visible_);
   return tracks;
 }
 

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <deque>
 #include <fstream>
+#include <opencv2/core.hpp>
 #include <sstream>
 #include <thread>
 
@@ -100,9 +101,7 @@ std::int64_t ResidentBytes(pid_t pid) {
 }
 
 std::string Overrun(const std::string& what, double limit) {
-  std::ostringstream text;
-  text << "killed: over the limit of " << limit << " " << what;
-  return text.str();
+  return cv::format("killed: over the limit of %g %s", limit, what.c_str());
 }
 
 /// Which limit a process is beyond; empty if none.

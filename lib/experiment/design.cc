@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
+#include <opencv2/core.hpp>
 #include <optional>
 
 #include "splitfusion/lib/base/error.h"
@@ -50,22 +50,16 @@ void CheckRange(const Range& range, const std::string& value) {
               "lo..hi or log:lo..hi with lo < hi, lo > 0 for log");
 }
 
-std::string Formatted(const char* format, double value) {
-  char text[48];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
-
 std::string Draw(const Range& range, double share) {
   if (range.logarithmic) {
     const double value = range.low * std::pow(range.high / range.low, share);
-    return range.whole ? Formatted("%.0f", value) : Formatted("%.4g", value);
+    return range.whole ? cv::format("%.0f", value) : cv::format("%.4g", value);
   }
   if (!range.whole) {
-    return Formatted("%.4g", range.low + share * (range.high - range.low));
+    return cv::format("%.4g", range.low + share * (range.high - range.low));
   }
   const double count = range.high - range.low + 1;
-  return Formatted("%.0f", range.low + std::floor(share * count));
+  return cv::format("%.0f", range.low + std::floor(share * count));
 }
 
 std::string Draw(const Axis& axis, double share) {

@@ -1,19 +1,17 @@
 #include "splitfusion/lib/experiment/experiment_folder.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/experiment/design.h"
-#include "splitfusion/lib/experiment/run_state.h"
 #include "splitfusion/lib/experiment/task_record.h"
-#include "splitfusion/lib/report/report_json.h"
 
 namespace splitfusion {
 namespace {
@@ -88,30 +86,12 @@ void CheckSequence(const SequenceEntry& before, const SequenceEntry& now) {
 
 }  // namespace
 
-ExperimentFolder::ExperimentFolder(std::string root) : root_(std::move(root)) {}
-
-std::string ExperimentFolder::Below(const std::string& name) const {
-  return (fs::path(root_) / name).string();
-}
-
-std::string ExperimentFolder::Experiments() const {
-  return Below("experiments");
-}
-
-std::string ExperimentFolder::Tasks() const { return Below("tasks"); }
-
-std::string ExperimentFolder::Progress() const { return Below("progress.log"); }
-
-std::string ExperimentFolder::TaskFolder(const std::string& task) const {
-  return (fs::path(Tasks()) / task).string();
-}
-
-std::string ExperimentFolder::Run(const std::string& task) const {
-  return (fs::path(TaskFolder(task)) / "run").string();
-}
-
-std::string ExperimentFolder::Lock(const std::string& task) const {
-  return (fs::path(TaskFolder(task)) / "lock").string();
+void MakeFolder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw InputError(folder + ": cannot be created (" + error.message() + ")");
+  }
 }
 
 void AddExperiment(const ExperimentFolder& folder,
@@ -125,18 +105,14 @@ void AddExperiment(const ExperimentFolder& folder,
     }
   }
   const std::string text = JsonText(ToJson(experiment), 2);
-  char hash[24];
-  std::snprintf(hash, sizeof(hash), "_%016llx.json",
-                static_cast<unsigned long long>(StableHash(text)));
+  const std::string hash = cv::format("_%016lx.json", StableHash(text));
   const std::vector<std::string> names = Entries(folder.Experiments());
   for (const std::string& name : names) {
     if (name.find(hash) != std::string::npos) return;
   }
-  char number[16];
-  std::snprintf(number, sizeof(number), "%04d",
-                static_cast<int>(names.size()) + 1);
+  const std::string number = cv::format("%04zu", names.size() + 1);
   WriteFileAtomically(
-      (fs::path(folder.Experiments()) / (std::string(number) + hash)).string(),
+      (fs::path(folder.Experiments()) / (number + hash)).string(),
       [&](std::ostream& out) { out << text << '\n'; });
 }
 

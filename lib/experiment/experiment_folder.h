@@ -1,7 +1,9 @@
 #ifndef SPLITFUSION_LIB_EXPERIMENT_EXPERIMENT_FOLDER_H_
 #define SPLITFUSION_LIB_EXPERIMENT_EXPERIMENT_FOLDER_H_
 
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "splitfusion/lib/experiment/task.h"
@@ -12,26 +14,41 @@ namespace splitfusion {
 class ExperimentFolder {
  public:
   /// Nothing is touched on disk.
-  explicit ExperimentFolder(std::string root);
+  explicit ExperimentFolder(std::string root) : root_(std::move(root)) {}
 
   /// DIR
   const std::string& root() const { return root_; }
-  std::string Experiments() const;  ///< DIR/experiments
-  std::string Tasks() const;        ///< DIR/tasks
-  std::string Progress() const;     ///< DIR/progress.log
+  /// A file or folder in DIR.
+  std::string Below(const std::string& name) const {
+    return (std::filesystem::path(root_) / name).string();
+  }
+  /// DIR/experiments
+  std::string Experiments() const { return Below("experiments"); }
+  /// DIR/tasks
+  std::string Tasks() const { return Below("tasks"); }
+  /// DIR/progress.log
+  std::string Progress() const { return Below("progress.log"); }
   /// DIR/tasks/TASK
-  std::string TaskFolder(const std::string& task) const;
+  std::string TaskFolder(const std::string& task) const {
+    return Below("tasks/" + task);
+  }
   /// DIR/tasks/TASK/run
-  std::string Run(const std::string& task) const;
+  std::string Run(const std::string& task) const {
+    return TaskFolder(task) + "/run";
+  }
   /// DIR/tasks/TASK/lock
-  std::string Lock(const std::string& task) const;
-
-  /// A file in DIR.
-  std::string Below(const std::string& name) const;
+  std::string Lock(const std::string& task) const {
+    return TaskFolder(task) + "/lock";
+  }
 
  private:
   std::string root_;
 };
+
+/// Makes a folder, and those above it.
+///
+/// @throw InputError if that cannot be done.
+void MakeFolder(const std::string& folder);
 
 /// Adds an experiment to those that were run into the folder, unless it is
 /// there.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/evaluation/headline.h"
 #include "splitfusion/lib/experiment/run_state.h"
 
@@ -58,20 +58,14 @@ void ReadHeadline(const std::string& run, Figures* figures) {
   }
 }
 
-std::size_t Column(const std::string& name) {
+}  // namespace
+
+std::size_t FigureColumn(const std::string& name) {
   const auto found = std::find(kFigureNames.begin(), kFigureNames.end(), name);
   if (found == kFigureNames.end()) {
     throw std::logic_error(name + " is no figure");
   }
   return static_cast<std::size_t>(found - kFigureNames.begin());
-}
-
-}  // namespace
-
-double& Figures::At(const std::string& name) { return values[Column(name)]; }
-
-double Figures::At(const std::string& name) const {
-  return values[Column(name)];
 }
 
 Figures ReadFigures(const std::string& run, bool evaluated) {

@@ -28,6 +28,9 @@ inline constexpr std::array<const char*, 16> kFigureNames = {
     "cpu_seconds_per_frame",
     "peak_memory_bytes"};
 
+/// Place of a name in kFigureNames.
+std::size_t FigureColumn(const std::string& name);
+
 /// Figures of one run, by kFigureNames; NaN where there is none.
 struct Figures {
   /// All unknown.
@@ -36,9 +39,11 @@ struct Figures {
   std::array<double, kFigureNames.size()> values;  ///< By column.
 
   /// A figure by its name, one of kFigureNames.
-  double& At(const std::string& name);
+  double& At(const std::string& name) { return values[FigureColumn(name)]; }
   /// The same.
-  double At(const std::string& name) const;
+  double At(const std::string& name) const {
+    return values[FigureColumn(name)];
+  }
 };
 
 /// Reads the figures of RUN/summary.json and, if `evaluated`, of the headline

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/ghosts.h"
 #include "splitfusion/lib/evaluation/ground_truth.h"

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <limits>
 #include <map>
+#include <opencv2/core.hpp>
 #include <set>
 #include <sstream>
 
@@ -57,16 +57,8 @@ struct Column {
   }
 };
 
-std::size_t FigureIndex(const std::string& name) {
-  const auto found = std::find(kFigureNames.begin(), kFigureNames.end(), name);
-  return static_cast<std::size_t>(found - kFigureNames.begin());
-}
-
 std::string Number(double value, int decimals, bool with_sign) {
-  char text[64];
-  std::snprintf(text, sizeof(text), with_sign ? "%+.*f" : "%.*f", decimals,
-                value);
-  return text;
+  return cv::format(with_sign ? "%+.*f" : "%.*f", decimals, value);
 }
 
 /// Enough digits for a scatter to be told from zero, unless it is the rounding
@@ -140,7 +132,7 @@ std::vector<Shown> InOrder(const std::vector<ResultGroup>& groups,
                            bool differences) {
   std::vector<std::pair<double, Shown>> order;
   for (const Shown& shown : kShown) {
-    order.emplace_back(Telling(groups, FigureIndex(shown.name), differences),
+    order.emplace_back(Telling(groups, FigureColumn(shown.name), differences),
                        shown);
   }
   std::stable_sort(
@@ -156,7 +148,7 @@ std::vector<Column> FigureColumns(const std::vector<ResultGroup>& groups,
                                   bool differences) {
   std::vector<Column> columns;
   for (const Shown& shown : InOrder(groups, differences)) {
-    const std::size_t index = FigureIndex(shown.name);
+    const std::size_t index = FigureColumn(shown.name);
     Column column{shown.head, {}, false};
     bool known = false;
     for (const ResultGroup& group : groups) {

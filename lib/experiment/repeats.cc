@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
+#include <opencv2/core.hpp>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/experiment/design.h"
@@ -41,9 +41,7 @@ Settings ShiftVoxels(const NamedValues& parts, int repeat) {
                                    "to tell its ") +
                        key);
     }
-    char text[48];
-    std::snprintf(text, sizeof(text), "%.12g", size * ShiftFactor(key, repeat));
-    settings.Set(key, text);
+    settings.Set(key, cv::format("%.12g", size * ShiftFactor(key, repeat)));
   }
   return settings;
 }

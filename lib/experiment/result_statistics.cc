@@ -21,6 +21,18 @@ struct Gathered {
   ResultGroup group;
   FigureValues values;
   std::vector<double> seconds;
+
+  /// Counts a run, its figures less those of `partner` (null: as they are).
+  void Add(const ResultRow& row, const ResultRow* partner) {
+    ++group.planned;
+    if (!row.IsComplete() || (partner && !partner->IsComplete())) return;
+    ++group.runs;
+    for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
+      values[i].push_back(row.figures.values[i] -
+                          (partner ? partner->figures.values[i] : 0));
+    }
+    seconds.push_back(row.cost.wall_seconds);
+  }
 };
 
 /// Groups in the order in which they are first met.
@@ -181,18 +193,6 @@ const ResultRow* FindPartner(const Settings& baseline,
   return none ? nullptr : found.front();
 }
 
-void AddDifference(const ResultRow& row, const ResultRow& partner,
-                   Gathered* gathered) {
-  ++gathered->group.planned;
-  if (!row.IsComplete() || !partner.IsComplete()) return;
-  ++gathered->group.runs;
-  for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
-    gathered->values[i].push_back(row.figures.values[i] -
-                                  partner.figures.values[i]);
-  }
-  gathered->seconds.push_back(row.cost.wall_seconds);
-}
-
 }  // namespace
 
 double Spread::StandardError() const {
@@ -222,14 +222,7 @@ Spread DescribeValues(const std::vector<double>& values) {
 std::vector<ResultGroup> GroupResults(const ResultTable& table) {
   Groups groups;
   for (const ResultRow& row : table.rows) {
-    Gathered& gathered = groups.At(row.task.sequence, row.values);
-    ++gathered.group.planned;
-    if (!row.IsComplete()) continue;
-    ++gathered.group.runs;
-    for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
-      gathered.values[i].push_back(row.figures.values[i]);
-    }
-    gathered.seconds.push_back(row.cost.wall_seconds);
+    groups.At(row.task.sequence, row.values).Add(row, nullptr);
   }
   return groups.Describe();
 }
@@ -254,8 +247,8 @@ Comparison CompareWithBaseline(const ResultTable& table,
       comparison.unpaired += row.IsComplete() ? 1 : 0;
       continue;
     }
-    AddDifference(row, *partner, &groups.At(row.task.sequence, row.values));
-    AddDifference(row, *partner, &over_all.At(kAllSequences, row.values));
+    groups.At(row.task.sequence, row.values).Add(row, partner);
+    over_all.At(kAllSequences, row.values).Add(row, partner);
   }
   comparison.groups = groups.Describe();
   if (sequences.size() < 2) return comparison;

@@ -1,8 +1,6 @@
 #include "splitfusion/lib/experiment/run_state.h"
 
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "splitfusion/lib/base/error.h"
 
@@ -32,13 +30,6 @@ std::string FileDamage(const RunState& state, const std::string& run,
     }
   }
   return FindMissing(*state.marker, run);
-}
-
-nlohmann::ordered_json ReadJsonOrNull(const std::string& path) {
-  using Json = nlohmann::ordered_json;
-  std::ifstream stream(path);
-  Json value = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
-  return value.is_discarded() ? Json() : value;
 }
 
 }  // namespace splitfusion

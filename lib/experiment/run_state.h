@@ -1,7 +1,6 @@
 #ifndef SPLITFUSION_LIB_EXPERIMENT_RUN_STATE_H_
 #define SPLITFUSION_LIB_EXPERIMENT_RUN_STATE_H_
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -33,9 +32,6 @@ RunState ReadRunState(const std::string& run);
 /// missing or has another size; empty if there is nothing against it.
 std::string FileDamage(const RunState& state, const std::string& run,
                        bool evaluated);
-
-/// A JSON file; null if it is missing or broken.
-nlohmann::ordered_json ReadJsonOrNull(const std::string& path);
 
 }  // namespace splitfusion
 

@@ -1,9 +1,9 @@
 #include "splitfusion/lib/experiment/sequence_list.h"
 
 #include <filesystem>
-#include <fstream>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
 
 namespace splitfusion {
 namespace {
@@ -29,18 +29,6 @@ std::string FindGroundTruth(const std::string& ground_truth,
     if (HasGroundTruth(folder)) return folder.string();
   }
   return "";
-}
-
-std::vector<std::string> ReadList(const fs::path& path) {
-  std::vector<std::string> folders;
-  std::ifstream stream(path);
-  for (std::string line; std::getline(stream, line);) {
-    for (const std::string& folder :
-         SplitOutsideQuotes(line.substr(0, line.find('#')), '\n')) {
-      folders.push_back(folder);
-    }
-  }
-  return folders;
 }
 
 }  // namespace
@@ -76,9 +64,9 @@ std::vector<SequenceEntry> ReadSequences(const std::string& text,
       continue;
     }
     const fs::path list = fs::absolute(part);
-    for (const std::string& folder : ReadList(list)) {
+    for (const TextLine& line : ReadTextLines(list, /*cut_comments=*/true)) {
       sequences.push_back(
-          MakeSequence(folder, truth, list.parent_path().string()));
+          MakeSequence(line.text, truth, list.parent_path().string()));
     }
   }
   return sequences;

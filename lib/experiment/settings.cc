@@ -4,17 +4,10 @@
 #include <set>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
 
 namespace splitfusion {
 namespace {
-
-constexpr const char* kBlanks = " \t\r\n";
-
-std::string Trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
-}
 
 std::string Quoted(const std::string& value) {
   const bool plain = value.find_first_of(",;\"") == std::string::npos &&

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <deque>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <thread>
 
@@ -174,18 +174,7 @@ class SweepQueue {
 };
 
 std::string Seconds(double seconds) {
-  char text[48];
-  std::snprintf(text, sizeof(text), seconds < 10 ? "%.1f s" : "%.0f s",
-                seconds);
-  return text;
-}
-
-void MakeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw InputError(folder + ": cannot be created (" + error.message() + ")");
-  }
+  return cv::format(seconds < 10 ? "%.1f s" : "%.0f s", seconds);
 }
 
 }  // namespace

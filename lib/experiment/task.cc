@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <set>
 
 #include "splitfusion/lib/base/error.h"
@@ -36,11 +36,8 @@ std::string TaskName(const Task& task) {
   std::sort(entries.begin(), entries.end());
   std::string text = task.sequence + '\n' + task.row;
   for (const auto& [key, value] : entries) text += '\n' + key + '=' + value;
-  char hash[24];
-  std::snprintf(hash, sizeof(hash), "%010llx",
-                static_cast<unsigned long long>(StableHash(text) >> 24));
-  return Readable(task.sequence) + "_" + hash + "_r" +
-         std::to_string(task.repeat);
+  return Readable(task.sequence) +
+         cv::format("_%010lx_r%d", StableHash(text) >> 24, task.repeat);
 }
 
 /// The tasks of one sequence, row and point.

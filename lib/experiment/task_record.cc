@@ -1,41 +1,32 @@
 #include "splitfusion/lib/experiment/task_record.h"
 
-#include <unistd.h>
-
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <utility>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/experiment/run_state.h"
-#include "splitfusion/lib/report/report_json.h"
+#include "splitfusion/lib/base/json_file.h"
 
 namespace splitfusion {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<TaskState, const char*>, 7> kStates = {{
-    {TaskState::kWaiting, "waiting"},
-    {TaskState::kStarted, "started"},
-    {TaskState::kChecking, "checking"},
-    {TaskState::kComplete, "complete"},
-    {TaskState::kFailed, "failed"},
-    {TaskState::kUnevaluated, "not evaluated"},
-    {TaskState::kRecorded, "recorded"},
-}};
+/// By TaskState.
+constexpr std::array<const char*, 7> kStateNames = {
+    "waiting", "started",       "checking", "complete",
+    "failed",  "not evaluated", "recorded"};
 
 TaskState StateFromText(const std::string& text) {
-  for (const auto& [state, name] : kStates) {
-    if (text == name) return state;
-  }
-  throw InputError("state = " + text + ": expected one that sf_batch writes");
+  const auto found = std::find(kStateNames.begin(), kStateNames.end(), text);
+  CheckOption(found != kStateNames.end(), "state", text,
+              "one that sf_batch writes");
+  return static_cast<TaskState>(found - kStateNames.begin());
 }
 
 std::string RecordPath(const std::string& folder) {
@@ -109,7 +100,7 @@ TaskRecord RecordFromJson(const Json& json) {
 }  // namespace
 
 std::string ToString(TaskState state) {
-  return kStates[static_cast<std::size_t>(state)].second;
+  return kStateNames[static_cast<std::size_t>(state)];
 }
 
 std::string TaskRecord::Error() const {
@@ -130,9 +121,7 @@ std::optional<TaskRecord> ReadTaskRecord(const std::string& folder) try {
 }
 
 void WriteTaskRecord(const std::string& folder, const TaskRecord& record) {
-  WriteFileAtomically(RecordPath(folder), [&](std::ostream& out) {
-    out << JsonText(RecordJson(record), 2) << '\n';
-  });
+  WriteJson(RecordPath(folder), RecordJson(record), 2);
 }
 
 std::string TimeText() {
@@ -144,17 +133,9 @@ std::string TimeText() {
   const std::time_t seconds = since_epoch / 1000;
   std::tm parts = {};
   gmtime_r(&seconds, &parts);
-  char text[32], end[16];
+  char text[32];
   std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%S", &parts);
-  std::snprintf(end, sizeof(end), ".%03dZ",
-                static_cast<int>(since_epoch % 1000));
-  return std::string(text) + end;
-}
-
-std::string HostName() {
-  char name[256] = "";
-  gethostname(name, sizeof(name) - 1);
-  return name;
+  return cv::format("%s.%03dZ", text, static_cast<int>(since_epoch % 1000));
 }
 
 }  // namespace splitfusion

@@ -72,9 +72,6 @@ void WriteTaskRecord(const std::string& folder, const TaskRecord& record);
 /// Now, UTC, as 2026-01-31T12:00:00.000Z.
 std::string TimeText();
 
-/// Name of this machine.
-std::string HostName();
-
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_EXPERIMENT_TASK_RECORD_H_

@@ -16,14 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void MakeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw InputError(folder + ": cannot be created (" + error.message() + ")");
-  }
-}
-
 bool HasEnded(TaskState state) {
   return state == TaskState::kComplete || state == TaskState::kFailed ||
          state == TaskState::kUnevaluated || state == TaskState::kRecorded;

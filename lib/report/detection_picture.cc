@@ -1,7 +1,6 @@
 #include "splitfusion/lib/report/detection_picture.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
@@ -40,9 +39,8 @@ void PaintMask(const cv::Mat& mask, const cv::Scalar& paint, cv::Mat* picture) {
 void DrawCaption(const InstanceMask& instance, cv::Point corner,
                  cv::Mat* picture) {
   constexpr double kScale = 0.42;
-  char score[16];
-  std::snprintf(score, sizeof(score), " %.2f", instance.score);
-  const std::string text = instance.class_name + score;
+  const std::string text =
+      instance.class_name + cv::format(" %.2f", instance.score);
   const int width =
       cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kScale, 1, nullptr).width;
   const cv::Point place(

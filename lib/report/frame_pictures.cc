@@ -1,12 +1,11 @@
 #include "splitfusion/lib/report/frame_pictures.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/report/montage.h"
 #include "splitfusion/lib/report/pictures.h"
+#include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {
 namespace {
@@ -53,34 +52,18 @@ void WriteFramePictures(const RunPaths& paths, int frame,
                         const FrameImages& images) {
   std::vector<MontageTile> tiles;
   for (const NamedPicture& item : MakePictures(images)) {
-    WritePng(paths.Picture(frame, item.name), item.picture);
+    WriteImage(paths.Picture(frame, item.name), item.picture);
     tiles.push_back({item.caption, item.picture});
   }
   if (tiles.empty()) return;
-  WritePng(paths.Picture(frame, "montage"), MakeMontage(tiles, 3));
+  WriteImage(paths.Picture(frame, "montage"), MakeMontage(tiles, 3));
 }
 
 void WriteMask(const RunPaths& paths, const std::string& stem,
                const cv::Mat& labels) {
   CheckOption(labels.type() == CV_16UC1, "labels of mask " + stem,
               cv::typeToString(labels.type()), "CV_16UC1");
-  WritePng(paths.Mask(stem), labels);
-}
-
-void WritePng(const std::string& path, const cv::Mat& picture) {
-  WritePathAtomically(path, [&](const std::string& temporary) {
-    bool written = false;
-    try {
-      written = cv::imwrite(temporary, picture);
-    } catch (const cv::Exception&) {
-      written = false;
-    }
-    if (!written) {
-      throw InputError(path +
-                       ": cannot be written (folder missing, not "
-                       "writable or disk full)");
-    }
-  });
+  WriteImage(paths.Mask(stem), labels);
 }
 
 }  // namespace splitfusion

@@ -35,11 +35,6 @@ void WriteFramePictures(const RunPaths& paths, int frame,
 void WriteMask(const RunPaths& paths, const std::string& stem,
                const cv::Mat& labels);
 
-/// Writes a picture through a temporary name; missing folders are created.
-///
-/// @throw InputError if the file cannot be written; names the path.
-void WritePng(const std::string& path, const cv::Mat& picture);
-
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_REPORT_FRAME_PICTURES_H_

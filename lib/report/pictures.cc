@@ -12,6 +12,9 @@ namespace {
 
 const cv::Vec3b kWhite(255, 255, 255);
 const cv::Vec3b kBlack(0, 0, 0);
+constexpr float kNear = 0.4f, kFar = 5.0f;  // Metres.
+constexpr float kMaxError = 0.05f;          // Metres.
+constexpr double kOpacity = 0.5;
 
 void CheckImage(const cv::Mat& image, int type, const std::string& name,
                 cv::Size size) {
@@ -77,25 +80,21 @@ cv::Mat NormalPicture(const cv::Mat& normals) {
   return picture;
 }
 
-cv::Mat DepthPicture(const cv::Mat& depth, float near_m, float far_m) {
+cv::Mat DepthPicture(const cv::Mat& depth) {
   CheckImage(depth, CV_32FC1, "depth", depth.size());
-  CheckOption(far_m > near_m, "far_m", far_m, "a value above near_m");
-  return TurboPicture(depth, depth > 0, near_m, far_m);
+  return TurboPicture(depth, depth > 0, kNear, kFar);
 }
 
-cv::Mat ErrorPicture(const cv::Mat& model_depth, const cv::Mat& live_depth,
-                     float max_error_m) {
+cv::Mat ErrorPicture(const cv::Mat& model_depth, const cv::Mat& live_depth) {
   CheckImage(model_depth, CV_32FC1, "model depth", live_depth.size());
   CheckImage(live_depth, CV_32FC1, "live depth", live_depth.size());
-  CheckOption(max_error_m > 0, "max_error_m", max_error_m, "a value above 0");
   cv::Mat error;
   cv::absdiff(model_depth, live_depth, error);
   return TurboPicture(error, (model_depth > 0) & (live_depth > 0), 0,
-                      max_error_m);
+                      kMaxError);
 }
 
-cv::Mat LabelPicture(const cv::Mat& color, const cv::Mat& labels,
-                     double opacity) {
+cv::Mat LabelPicture(const cv::Mat& color, const cv::Mat& labels) {
   CheckImage(color, CV_8UC3, "color", color.size());
   CheckImage(labels, CV_16UC1, "labels", color.size());
   const cv::Mat_<ushort> ids = labels;
@@ -103,7 +102,7 @@ cv::Mat LabelPicture(const cv::Mat& color, const cv::Mat& labels,
   picture.forEach<cv::Vec3b>([&](cv::Vec3b& pixel, const int* at) {
     const int id = ids(at[0], at[1]);
     if (id == 0) return;
-    const double share = IsOutline(ids, at[0], at[1]) ? 1.0 : opacity;
+    const double share = IsOutline(ids, at[0], at[1]) ? 1.0 : kOpacity;
     pixel = cv::Vec3b(cv::Vec3d(pixel) * (1.0 - share) +
                       cv::Vec3d(LabelColor(id)) * share);
   });

@@ -5,30 +5,27 @@
 #include "splitfusion/lib/report/frame_parts.h"
 
 namespace splitfusion {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json ToJson(const AssociationCounts& counts) {
-  Json json = {{"model_points", counts.model_points},
-               {"accepted", counts.accepted}};
+// By to_json() the library makes values of these types, and of lists of them.
+
+void to_json(Json& json, const AssociationCounts& counts) {
+  json = {{"model_points", counts.model_points}, {"accepted", counts.accepted}};
   for (const RejectedPoints& rejected : counts.rejected) {
     json[rejected.reason] = rejected.count;
   }
-  return json;
 }
 
-Json ToJson(const TermCost& term) {
-  return {{"term", term.term},
+void to_json(Json& json, const TermCost& term) {
+  json = {{"term", term.term},
           {"residual_vectors", term.residual_vectors},
           {"initial", term.initial},
           {"final", term.final}};
 }
 
-Json ToJson(const SolverReport& solver) {
-  Json terms = Json::array();
-  for (const TermCost& term : solver.terms) terms.push_back(ToJson(term));
-  return {{"usable", solver.usable},
+void to_json(Json& json, const SolverReport& solver) {
+  json = {{"usable", solver.usable},
           {"termination", solver.termination},
           {"message", solver.message},
           {"initial_cost", solver.initial_cost},
@@ -36,26 +33,24 @@ Json ToJson(const SolverReport& solver) {
           {"parameters", solver.parameters},
           {"residuals", solver.residuals},
           {"iterations", solver.iterations.size()},
-          {"terms", terms},
+          {"terms", solver.terms},
           {"seconds",
            {{"jacobian", solver.jacobian_seconds},
             {"linear_solver", solver.linear_solver_seconds},
             {"total", solver.total_seconds}}}};
 }
 
-Json ToJson(const TrackingRound& round) {
-  return {{"stage", round.stage},
+void to_json(Json& json, const TrackingRound& round) {
+  json = {{"stage", round.stage},
           {"stride", round.stride},
           {"anneal", round.anneal},
-          {"association", ToJson(round.association)},
+          {"association", round.association},
           {"lost_pairs", round.lost_pairs},
-          {"solver", ToJson(round.solver)}};
+          {"solver", round.solver}};
 }
 
-Json ToJson(const SurfaceReport& surface) {
-  Json rounds = Json::array();
-  for (const auto& round : surface.rounds) rounds.push_back(ToJson(round));
-  return {{"id", surface.id},
+void to_json(Json& json, const SurfaceReport& surface) {
+  json = {{"id", surface.id},
           {"label", surface.label},
           {"kind", ToString(surface.kind)},
           {"state", ToString(surface.state)},
@@ -67,7 +62,7 @@ Json ToJson(const SurfaceReport& surface) {
           {"node_spacing", surface.node_spacing},
           {"vertices", surface.vertices},
           {"residual_rms", surface.residual_rms},
-          {"rounds", rounds},
+          {"rounds", surface.rounds},
           {"seconds",
            {{"render", surface.render_seconds},
             {"associate", surface.associate_seconds},
@@ -76,15 +71,13 @@ Json ToJson(const SurfaceReport& surface) {
             {"mesh", surface.mesh_seconds}}}};
 }
 
-Json ToJson(const SplitDecision& decision) {
-  return {{"action", decision.action},
+void to_json(Json& json, const SplitDecision& decision) {
+  json = {{"action", decision.action},
           {"surface", decision.surface},
           {"class_name", decision.class_name},
           {"score", decision.score},
           {"overlap", decision.overlap}};
 }
-
-}  // namespace
 
 Json ToJson(const FrameReport& report) {
   Json seconds;
@@ -92,18 +85,9 @@ Json ToJson(const FrameReport& report) {
     seconds[part.name] = report.*part.seconds;
   }
   seconds["total"] = report.total_seconds;
-  Json decisions = Json::array();
-  for (const auto& item : report.decisions) decisions.push_back(ToJson(item));
-  Json surfaces = Json::array();
-  for (const auto& item : report.surfaces) surfaces.push_back(ToJson(item));
-  return {{"frame", report.frame},  {"timestamp", report.timestamp},
-          {"stem", report.stem},    {"seconds", seconds},
-          {"decisions", decisions}, {"surfaces", surfaces}};
-}
-
-std::string JsonText(const Json& value, int indent) {
-  return value.dump(indent, ' ', /*ensure_ascii=*/false,
-                    Json::error_handler_t::replace);
+  return {{"frame", report.frame},         {"timestamp", report.timestamp},
+          {"stem", report.stem},           {"seconds", seconds},
+          {"decisions", report.decisions}, {"surfaces", report.surfaces}};
 }
 
 }  // namespace splitfusion

@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/owned_files.h"
-#include "splitfusion/lib/base/peak_memory.h"
+#include "splitfusion/lib/base/process_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/report/html_report.h"
 #include "splitfusion/lib/report/iterations_csv.h"
@@ -110,8 +110,7 @@ void WriteText(const std::string& path, const std::string& text) {
 }  // namespace
 
 bool IsComplete(const RunPaths& paths) {
-  std::ifstream stream(paths.Summary());
-  const auto summary = nlohmann::json::parse(stream, nullptr, false);
+  const nlohmann::ordered_json summary = ReadJsonOrNull(paths.Summary());
   return summary.is_object() && summary.contains("complete") &&
          summary["complete"] == true;
 }
@@ -197,7 +196,7 @@ void RunDirectory::Finish(const RunEnding& ending) const {
   facts.skipped_frames = ending.skipped_frames;
   const nlohmann::ordered_json summary = ToJson(facts);
   WriteHtmlReport(paths_, summary);
-  WriteText(paths_.Summary(), JsonText(summary, 2) + "\n");
+  WriteJson(paths_.Summary(), summary, 2);
 }
 
 }  // namespace splitfusion

@@ -98,20 +98,6 @@ void RemoveTemporaries(const std::string& folder) {
   }
 }
 
-/// Empty folders that are left when the files have been moved.
-void RemoveEmptyFolders(const std::string& folder) {
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (fs::is_directory(entry.symlink_status())) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::error_code ignored;  // Those that are not empty stay.
-  for (auto it = folders.rbegin(); it != folders.rend(); ++it) {
-    fs::remove(*it, ignored);
-  }
-}
-
 /// Removes what an unfinished run wrote and, if nothing is left, its folder;
 /// its marker last, so that a process that is killed meanwhile leaves a folder
 /// that is still known for one.
@@ -333,7 +319,7 @@ void RunFolder::PutInPlace(RunMarker marker) {
   }
   marker.files.clear();
   WriteRunMarker(unfinished_.root(), marker);
-  RemoveEmptyFolders(unfinished_.root());
+  RemoveEmptyTree(unfinished_.root());
 }
 
 }  // namespace splitfusion

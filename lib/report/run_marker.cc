@@ -4,11 +4,10 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/report/run_paths.h"
 
 namespace splitfusion {
@@ -20,16 +19,17 @@ using Json = nlohmann::ordered_json;
 constexpr int kFormatVersion = 1;
 constexpr char kTool[] = "sf_run";
 
-constexpr std::array<RunStatus, 4> kStatuses = {
-    RunStatus::kRunning, RunStatus::kComplete, RunStatus::kIncomplete,
-    RunStatus::kFailed};
+/// By RunStatus.
+constexpr std::array<const char*, 4> kStatusNames = {"running", "complete",
+                                                     "incomplete", "failed"};
 
 RunStatus ParseStatus(const std::string& text) {
-  for (const RunStatus status : kStatuses) {
-    if (ToString(status) == text) return status;
+  const auto found = std::find(kStatusNames.begin(), kStatusNames.end(), text);
+  if (found == kStatusNames.end()) {
+    throw InputError("status '" + text + "': expected running, complete, " +
+                     "incomplete or failed");
   }
-  throw InputError("status '" + text + "': expected running, complete, " +
-                   "incomplete or failed");
+  return static_cast<RunStatus>(found - kStatusNames.begin());
 }
 
 Json ToJson(const RunMarker& marker) {
@@ -94,17 +94,7 @@ RunFile Describe(const std::string& path) {
 }  // namespace
 
 std::string ToString(RunStatus status) {
-  switch (status) {
-    case RunStatus::kRunning:
-      return "running";
-    case RunStatus::kComplete:
-      return "complete";
-    case RunStatus::kIncomplete:
-      return "incomplete";
-    case RunStatus::kFailed:
-      break;
-  }
-  return "failed";
+  return kStatusNames[static_cast<std::size_t>(status)];
 }
 
 OwnedFileList RunMarker::Owned() const {
@@ -131,11 +121,7 @@ std::optional<RunMarker> ReadRunMarker(const std::string& folder) {
 }
 
 void WriteRunMarker(const std::string& folder, const RunMarker& marker) {
-  WriteFileAtomically(RunPaths(folder).Marker(), [&](std::ostream& out) {
-    // Names come from the user's files: what is no UTF-8 is replaced.
-    out << ToJson(marker).dump(1, ' ', false, Json::error_handler_t::replace)
-        << '\n';
-  });
+  WriteJson(RunPaths(folder).Marker(), ToJson(marker), 1);
 }
 
 std::map<std::string, RunFile> ListRunFiles(

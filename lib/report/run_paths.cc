@@ -4,16 +4,11 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <opencv2/core.hpp>
 #include <utility>
 
 namespace splitfusion {
 namespace {
-
-std::string Digits(int value, std::size_t width) {
-  std::string digits = std::to_string(value);
-  if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
-  return digits;
-}
 
 /// File systems take 255 bytes; the id at the beginning keeps names apart.
 constexpr std::size_t kMaxSurfaceName = 64;
@@ -30,9 +25,6 @@ std::string RunPaths::Marker() const { return Below("run.json"); }
 std::string RunPaths::Lock() const { return Below("lock"); }
 std::string RunPaths::Unfinished() const { return Below("unfinished"); }
 std::string RunPaths::Checkpoint() const { return Below("checkpoint.bin"); }
-std::string RunPaths::KeptCheckpoint(int frame) const {
-  return Below("checkpoints/" + FrameName(frame) + ".bin");
-}
 std::string RunPaths::Options() const { return Below("options.flags"); }
 std::string RunPaths::Calibration() const { return Below("calibration.txt"); }
 std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }
@@ -42,20 +34,7 @@ std::string RunPaths::Summary() const { return Below("summary.json"); }
 std::string RunPaths::Evaluation() const { return Below("evaluation.json"); }
 std::string RunPaths::HtmlReport() const { return Below("report.html"); }
 std::string RunPaths::Pictures() const { return Below("pictures"); }
-
 std::string RunPaths::Detections() const { return Below("detections"); }
-
-std::string RunPaths::SolverReport(int frame) const {
-  return Below("solver/" + FrameName(frame) + ".txt");
-}
-
-std::string RunPaths::Picture(int frame, const std::string& name) const {
-  return Below("pictures/" + FrameName(frame) + "_" + name + ".png");
-}
-
-std::string RunPaths::Mask(const std::string& stem) const {
-  return Below("masks/" + stem + ".png");
-}
 
 std::string RunPaths::Surface(int id, const std::string& label) const {
   return Below("surfaces/" + SurfaceName(id, label));
@@ -67,7 +46,7 @@ std::string RunPaths::WarpedMesh(int id, const std::string& label,
 }
 
 std::string RunPaths::SurfaceName(int id, const std::string& label) {
-  std::string name = Digits(id, 3) + "_" + label;
+  std::string name = cv::format("%03d_", id) + label;
   for (char& c : name) {
     if (!IsPlain(c)) c = '_';
   }
@@ -86,7 +65,7 @@ bool RunPaths::IsOfRun(const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::string RunPaths::FrameName(int frame) { return Digits(frame, 6); }
+std::string RunPaths::FrameName(int frame) { return cv::format("%06d", frame); }
 
 std::string RunPaths::Below(const std::string& name) const {
   return (std::filesystem::path(root_) / name).string();

@@ -19,7 +19,9 @@ class RunPaths {
   std::string Unfinished() const;  ///< RUN/unfinished, of a run that goes on
   std::string Checkpoint() const;  ///< RUN/checkpoint.bin
   /// RUN/checkpoints/FRAME.bin, state before that frame.
-  std::string KeptCheckpoint(int frame) const;
+  std::string KeptCheckpoint(int frame) const {
+    return Below("checkpoints/" + FrameName(frame) + ".bin");
+  }
   std::string Options() const;      ///< RUN/options.flags
   std::string Calibration() const;  ///< RUN/calibration.txt
   std::string Trajectory() const;   ///< RUN/trajectory.txt
@@ -31,11 +33,18 @@ class RunPaths {
   std::string Pictures() const;     ///< RUN/pictures
   /// RUN/detections, the masks of a network that ran inline.
   std::string Detections() const;
-  std::string SolverReport(int frame) const;  ///< RUN/solver/FRAME.txt
+  /// RUN/solver/FRAME.txt
+  std::string SolverReport(int frame) const {
+    return Below("solver/" + FrameName(frame) + ".txt");
+  }
   /// RUN/pictures/FRAME_name.png
-  std::string Picture(int frame, const std::string& name) const;
+  std::string Picture(int frame, const std::string& name) const {
+    return Below("pictures/" + FrameName(frame) + "_" + name + ".png");
+  }
   /// RUN/masks/STEM.png, 16-bit surface ids; `stem` of the depth file.
-  std::string Mask(const std::string& stem) const;
+  std::string Mask(const std::string& stem) const {
+    return Below("masks/" + stem + ".png");
+  }
   /// RUN/surfaces/NNN_LABEL; characters of the label other than letters,
   /// digits, hyphens and dots become underscores, and the name ends after 64
   /// characters.

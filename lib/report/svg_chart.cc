@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <map>
+#include <opencv2/core.hpp>
 
 namespace splitfusion {
 namespace {
@@ -13,11 +14,7 @@ constexpr std::array<const char*, 8> kColors = {"#4477aa", "#ee6677", "#228833",
                                                 "#ccbb44", "#66ccee", "#aa3377",
                                                 "#999999", "#dd8833"};
 
-std::string Number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", value);
-  return text;
-}
+std::string Number(double value) { return cv::format("%.4g", value); }
 
 /// Axes of a chart: position and value to picture units.
 struct Axes {
@@ -151,24 +148,12 @@ std::string SvgChart(const Chart& chart) {
 }
 
 std::string HtmlEscaped(const std::string& text) {
+  static const std::map<char, std::string> special = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   std::string escaped;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
+    const auto found = special.find(c);
+    escaped += found == special.end() ? std::string(1, c) : found->second;
   }
   return escaped;
 }

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 
 #include "splitfusion/lib/base/brief_json.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
+#include "splitfusion/lib/base/text_file.h"
 #include "splitfusion/lib/segmentation/class_names.h"
 
 namespace splitfusion {
@@ -17,8 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 Json ReadJson(const std::string& path) {
-  std::ifstream stream(path);
-  const Json json = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  const Json json = ReadJsonOrNull<Json>(path);
   if (!json.is_array()) {
     throw InputError(path +
                      ": no JSON list: expected [{\"index\": 1, "
@@ -64,10 +64,8 @@ void CheckNewIndex(const std::string& path,
                    "') a second time: expected each index of a frame once");
 }
 
-/// A name as it is, without blanks at its end; that of a COCO number; empty if
-/// there is none.
-std::string NameOfClass(std::string word) {
-  word.erase(word.find_last_not_of(" \t\r") + 1);
+/// A name as it is; that of a COCO number; empty if there is none.
+std::string NameOfClass(const std::string& word) {
   if (word.find_first_not_of("0123456789") != std::string::npos) return word;
   const std::vector<std::string>& names = CocoClassNames();
   const std::size_t number =
@@ -91,25 +89,21 @@ std::vector<Detection> ReadDetections(const std::string& path,
 }
 
 std::vector<Detection> ReadClassList(const std::string& path) {
-  std::ifstream stream(path);
   std::vector<Detection> detections;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    line.resize(std::min(line.find('#'), line.size()));
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    std::istringstream words(line);
+  for (const TextLine& line : ReadTextLines(path, /*cut_comments=*/true)) {
+    std::istringstream words(line.text);
     Detection detection;
     words >> detection.index >> std::ws;
     std::getline(words, detection.class_name);
     detection.class_name = NameOfClass(detection.class_name);
     if (detection.index < 1 || detection.index > 65535 ||
         detection.class_name.empty()) {
-      throw InputError(path + ":" + std::to_string(number) + ": '" + line +
-                       "': expected an index of 1..65535 and a class, by its "
-                       "name or its COCO number of 1..80");
+      line.Refuse(
+          "an index of 1..65535 and a class, by its name or its COCO number of "
+          "1..80");
     }
     detections.push_back(std::move(detection));
-    CheckNewIndex(path + ":" + std::to_string(number), detections);
+    CheckNewIndex(line.place, detections);
   }
   return detections;
 }

@@ -1,20 +1,13 @@
 #include "splitfusion/lib/segmentation/label_table.h"
 
 #include <algorithm>
-#include <fstream>
 #include <vector>
 
-#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
 #include "splitfusion/lib/segmentation/class_names.h"
 
 namespace splitfusion {
 namespace {
-
-std::string Trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
 
 /// Applies one line `class, kind`; false if it does not parse.
 bool ApplyLine(const std::string& line, LabelTable* table) {
@@ -41,16 +34,10 @@ LabelTable::LabelTable()
                  "giraffe", "teddy bear", "umbrella", "tie",  "object"} {}
 
 LabelTable LabelTable::FromFile(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(path + ": cannot be opened");
   LabelTable table;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    line = Trimmed(line.substr(0, line.find('#')));
-    if (line.empty() || ApplyLine(line, &table)) continue;
-    throw InputError(path + ":" + std::to_string(number) + ": '" + line +
-                     "': expected 'class name, rigid' or 'class name, "
-                     "non_rigid'");
+  for (const TextLine& line : ReadTextLines(path, /*cut_comments=*/true)) {
+    if (ApplyLine(line.text, &table)) continue;
+    line.Refuse("'class name, rigid' or 'class name, non_rigid'");
   }
   return table;
 }

@@ -2,13 +2,13 @@
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/segmentation/detection_list.h"
+#include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {
 namespace {
@@ -19,20 +19,6 @@ using Settings = std::map<std::string, std::string>;
 constexpr char kSettingsFile[] = "segmentation.json";
 constexpr char kOverlapFolder[] = "overlaps";
 constexpr char kWrittenFile[] = "written.jsonl";
-
-/// `path`: for the message; `temporary`: where to write.
-void WriteImage(const std::string& path, const std::string& temporary,
-                const cv::Mat& image) {
-  bool written = false;
-  try {
-    written = cv::imwrite(temporary, image);
-  } catch (const cv::Exception&) {
-    written = false;
-  }
-  if (!written) {
-    throw InputError(path + ": cannot be written (not writable or disk full)");
-  }
-}
 
 /// Stems of the label images in a folder; half-written ones, whose name begins
 /// with a dot, left out.
@@ -72,11 +58,8 @@ OwnedFileList WrittenImages(const fs::path& folder) {
 }
 
 Settings ReadSettings(const fs::path& path) {
-  std::ifstream stream(path);
-  const nlohmann::json json =
-      nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false);
   try {
-    return json.get<Settings>();
+    return ReadJsonOrNull(path.string()).get<Settings>();
   } catch (const nlohmann::json::exception&) {
     throw InputError(path.string() +
                      ": expected the settings of a segmentation, a JSON "
@@ -133,9 +116,7 @@ MaskFolderWriter::MaskFolderWriter(const std::string& folder,
     throw InputError(folder + ": holds png files without " + kSettingsFile +
                      ": expected a new folder, or one of an earlier run");
   }
-  WriteFileAtomically(path.string(), [&](std::ostream& out) {
-    out << nlohmann::json(settings).dump(1) << '\n';
-  });
+  WriteJson(path.string(), nlohmann::json(settings), 1);
   RepairList();
   FindCompleteFrames();
 }
@@ -180,9 +161,10 @@ void MaskFolderWriter::AppendLines(const std::string& file,
 void MaskFolderWriter::AddImage(const std::string& name,
                                 const cv::Mat& image) const {
   const std::string path = (fs::path(folder_) / name).string();
-  WritePathAtomically(path, [&](const std::string& temporary) {
-    WriteImage(path, temporary, image);
-    AppendLines(kWrittenFile, WrittenLine({name, fs::file_size(temporary)}));
+  const std::string bytes = EncodeImage(path, image);
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << bytes;
+    AppendLines(kWrittenFile, WrittenLine({name, bytes.size()}));
   });
 }
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/sequence/image_file.h"
@@ -22,12 +21,6 @@ const NetworkOptions& Checked(const NetworkOptions& options) {
 double Rounded(double value, double digits) {
   const double scale = std::pow(10.0, digits);
   return std::round(value * scale) / scale;
-}
-
-std::string Text(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
 }
 
 }  // namespace
@@ -90,8 +83,8 @@ std::map<std::string, std::string> NetworkSegmenter::Settings() const {
           {"decoder", options_.decoder},
           {"input_size", ToString(input_size_)},
           {"class_names", classes},
-          {"score_threshold", Text(kept.score_threshold)},
-          {"nms_threshold", Text(kept.nms_threshold)},
+          {"score_threshold", cv::format("%g", kept.score_threshold)},
+          {"nms_threshold", cv::format("%g", kept.nms_threshold)},
           {"top_k", std::to_string(kept.top_k)}};
 }
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 #include <iterator>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
@@ -43,10 +42,7 @@ std::string Fingerprint(const std::string& bytes) {
   for (const char byte : bytes) {
     hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
   }
-  std::ostringstream text;
-  text << bytes.size() << " bytes, fnv1a " << std::hex << std::setw(16)
-       << std::setfill('0') << hash;
-  return text.str();
+  return cv::format("%zu bytes, fnv1a %016lx", bytes.size(), hash);
 }
 
 /// What OpenCV complains of, in one line: its own quotes of quotes, marked by

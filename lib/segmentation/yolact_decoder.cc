@@ -36,27 +36,29 @@ struct CheckedOutputs {
   cv::Size prototype_size;
 };
 
-CheckedOutputs CheckOutputs(const YolactOutputs& outputs, int priors,
-                            const DecoderInput& input) {
+CheckedOutputs CheckOutputs(const std::vector<NetworkTensor>& outputs,
+                            int priors, const DecoderInput& input) {
+  const NetworkTensor &loc = outputs.at(0), &conf = outputs.at(1);
+  const NetworkTensor &mask = outputs.at(2), &proto = outputs.at(3);
   const int columns = 1 + input.classes;
   const std::string rows = "1x" + std::to_string(priors) + "x";
   const std::string size =
       " for an input of " + ToString(input.placement.input);
-  CheckShape(outputs.loc, {priors, 4}, rows + "4" + size);
-  CheckShape(outputs.conf, {priors, columns},
+  CheckShape(loc, {priors, 4}, rows + "4" + size);
+  CheckShape(conf, {priors, columns},
              rows + std::to_string(columns) + ", background and " +
                  std::to_string(input.classes) + " classes (by their names)," +
                  size);
-  const std::vector<int> proto =
-      CheckShape(outputs.proto, {-1, -1, -1}, "1xHxWxM, M prototypes");
-  CheckShape(outputs.mask, {priors, proto[2]},
-             rows + std::to_string(proto[2]) + ", one for each prototype of '" +
-                 outputs.proto.name + "',");
-  return {AsMatrix(outputs.loc.data, priors),
-          AsMatrix(outputs.conf.data, priors),
-          AsMatrix(outputs.mask.data, priors),
-          AsMatrix(outputs.proto.data, proto[0] * proto[1]).t(),
-          {proto[1], proto[0]}};
+  const std::vector<int> shape =
+      CheckShape(proto, {-1, -1, -1}, "1xHxWxM, M prototypes");
+  CheckShape(mask, {priors, shape[2]},
+             rows + std::to_string(shape[2]) + ", one for each prototype of '" +
+                 proto.name + "',");
+  return {AsMatrix(loc.data, priors),
+          AsMatrix(conf.data, priors),
+          AsMatrix(mask.data, priors),
+          AsMatrix(proto.data, shape[0] * shape[1]).t(),
+          {shape[1], shape[0]}};
 }
 
 /// Priors whose best class is probable enough.
@@ -175,19 +177,6 @@ std::vector<int> FastNms(const std::vector<cv::Rect2f>& boxes,
   return kept;
 }
 
-std::vector<NetworkInstance> DecodeYolact(const YolactOutputs& outputs,
-                                          const DecoderInput& input,
-                                          const DecoderOptions& options) {
-  const int side = input.placement.input.width;
-  const int priors = static_cast<int>(YolactPriors(side).size());
-  const CheckedOutputs checked = CheckOutputs(outputs, priors, input);
-  std::vector<NetworkInstance> instances;
-  for (const Candidate& candidate : BestCandidates(checked, side, options)) {
-    instances.push_back(MakeInstance(candidate, checked, input.placement));
-  }
-  return instances;
-}
-
 namespace {
 
 class YolactDecoder : public NetworkDecoder {
@@ -216,9 +205,14 @@ class YolactDecoder : public NetworkDecoder {
   std::vector<NetworkInstance> Decode(
       const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
       const DecoderOptions& options) const override {
-    return DecodeYolact(
-        {outputs.at(0), outputs.at(1), outputs.at(2), outputs.at(3)}, input,
-        options);
+    const int side = input.placement.input.width;
+    const int priors = static_cast<int>(YolactPriors(side).size());
+    const CheckedOutputs checked = CheckOutputs(outputs, priors, input);
+    std::vector<NetworkInstance> instances;
+    for (const Candidate& candidate : BestCandidates(checked, side, options)) {
+      instances.push_back(MakeInstance(candidate, checked, input.placement));
+    }
+    return instances;
   }
 };
 

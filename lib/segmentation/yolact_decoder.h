@@ -8,24 +8,6 @@
 
 namespace splitfusion {
 
-/// Outputs of YOLACT before its own detection step, with P priors, C classes
-/// and M prototypes; each may have a batch dimension of 1 in front.
-struct YolactOutputs {
-  NetworkTensor loc;    ///< `loc`, P x 4: boxes against the priors.
-  NetworkTensor conf;   ///< `conf`, P x (1 + C): softmax, column 0 background.
-  NetworkTensor mask;   ///< `mask`, P x M: coefficients after tanh.
-  NetworkTensor proto;  ///< `proto`, H x W x M: prototypes after ReLU.
-};
-
-/// Instances from the outputs: priors whose best class is above 0.05, fast
-/// non-maximum suppression of the best 200 of each class, masks
-/// sigmoid(proto * mask^T) cropped to the box (one prototype pixel wider).
-///
-/// @throw InputError on a wrong shape.
-std::vector<NetworkInstance> DecodeYolact(const YolactOutputs& outputs,
-                                          const DecoderInput& input,
-                                          const DecoderOptions& options);
-
 /// Fast NMS (Bolya et al. 2019): indices of the boxes whose overlap (IoU) with
 /// every better box, be it kept or not, is at most `threshold`.
 ///
@@ -35,7 +17,16 @@ std::vector<int> FastNms(const std::vector<cv::Rect2f>& boxes,
 
 /// YOLACT (the paper's network): the frame stretched to a square of 550
 /// pixels, colours normalised, RGB. Width and height of the input must be
-/// equal.
+/// equal. Its outputs are those before its own detection step, with P priors, C
+/// classes and M prototypes; each may have a batch dimension of 1 in front:
+///  - `loc`, P x 4: boxes against the priors;
+///  - `conf`, P x (1 + C): softmax, column 0 background;
+///  - `mask`, P x M: coefficients after tanh;
+///  - `proto`, H x W x M: prototypes after ReLU.
+///
+/// Instances are priors whose best class is above 0.05, after fast non-maximum
+/// suppression of the best 200 of each class, with masks
+/// sigmoid(proto * mask^T) cropped to the box (one prototype pixel wider).
 std::unique_ptr<NetworkDecoder> MakeYolactDecoder();
 
 }  // namespace splitfusion

@@ -21,17 +21,17 @@ struct Candidate {
 };
 
 /// Shape of the prototypes, M x H x W.
-std::vector<int> CheckOutputs(const Yolov8SegOutputs& outputs,
+std::vector<int> CheckOutputs(const std::vector<NetworkTensor>& outputs,
                               const DecoderInput& input) {
   const int rows = input.placement.input.height / 4;
   const int columns = input.placement.input.width / 4;
   const std::vector<int> shape = CheckShape(
-      outputs.prototypes, {-1, rows, columns},
+      outputs.at(1), {-1, rows, columns},
       "1xMx" + ShapeText({rows, columns}) + ", M prototypes for an input of " +
           ToString(input.placement.input));
   const int prototypes = shape[0];
   const int expected = kBoxRows + input.classes + prototypes;
-  CheckShape(outputs.detections, {expected, -1},
+  CheckShape(outputs.at(0), {expected, -1},
              "1x" + std::to_string(expected) + "xN, a box, " +
                  std::to_string(input.classes) +
                  " classes (by their names) and " + std::to_string(prototypes) +
@@ -94,38 +94,6 @@ std::vector<Candidate> BestCandidates(const cv::Mat& detections, int classes,
   return kept;
 }
 
-}  // namespace
-
-std::vector<NetworkInstance> DecodeYolov8Seg(const Yolov8SegOutputs& outputs,
-                                             const DecoderInput& input,
-                                             const DecoderOptions& options) {
-  const std::vector<int> shape = CheckOutputs(outputs, input);
-  const cv::Size prototype_size(shape[2], shape[1]);
-  const cv::Mat prototypes = AsMatrix(outputs.prototypes.data, shape[0]);
-  const int first_coefficient = kBoxRows + input.classes;
-  const cv::Mat detections =
-      AsMatrix(outputs.detections.data, first_coefficient + shape[0]);
-  std::vector<NetworkInstance> instances;
-  for (const Candidate& candidate :
-       BestCandidates(detections, input.classes, options)) {
-    std::vector<float> coefficients(shape[0]);
-    for (int m = 0; m < shape[0]; ++m) {
-      coefficients[m] =
-          detections.at<float>(first_coefficient + m, candidate.anchor);
-    }
-    NetworkInstance instance{
-        candidate.class_index, candidate.score,
-        input.placement.FrameBox(candidate.box),
-        FrameMask(MaskProbability(prototypes, coefficients, prototype_size),
-                  input.placement)};
-    ClearOutside(instance.box, &instance.mask);
-    instances.push_back(instance);
-  }
-  return instances;
-}
-
-namespace {
-
 class Yolov8SegDecoder : public NetworkDecoder {
  public:
   std::vector<std::string> OutputNames() const override {
@@ -148,7 +116,29 @@ class Yolov8SegDecoder : public NetworkDecoder {
   std::vector<NetworkInstance> Decode(
       const std::vector<NetworkTensor>& outputs, const DecoderInput& input,
       const DecoderOptions& options) const override {
-    return DecodeYolov8Seg({outputs.at(0), outputs.at(1)}, input, options);
+    const std::vector<int> shape = CheckOutputs(outputs, input);
+    const cv::Size prototype_size(shape[2], shape[1]);
+    const cv::Mat prototypes = AsMatrix(outputs.at(1).data, shape[0]);
+    const int first_coefficient = kBoxRows + input.classes;
+    const cv::Mat detections =
+        AsMatrix(outputs.at(0).data, first_coefficient + shape[0]);
+    std::vector<NetworkInstance> instances;
+    for (const Candidate& candidate :
+         BestCandidates(detections, input.classes, options)) {
+      std::vector<float> coefficients(shape[0]);
+      for (int m = 0; m < shape[0]; ++m) {
+        coefficients[m] =
+            detections.at<float>(first_coefficient + m, candidate.anchor);
+      }
+      NetworkInstance instance{
+          candidate.class_index, candidate.score,
+          input.placement.FrameBox(candidate.box),
+          FrameMask(MaskProbability(prototypes, coefficients, prototype_size),
+                    input.placement)};
+      ClearOutside(instance.box, &instance.mask);
+      instances.push_back(instance);
+    }
+    return instances;
   }
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <tuple>
 #include <utility>
@@ -16,25 +15,6 @@ namespace splitfusion {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Calls `parse` for every line that is neither blank nor a comment.
-///
-/// @throw InputError if it returns false.
-template <typename Parse>
-void ForEachLine(const std::string& path, const std::string& expected,
-                 const Parse& parse) {
-  std::ifstream stream = OpenTextFile(path);
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    const std::size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == std::string::npos || line[begin] == '#') continue;
-    std::istringstream words(line);
-    if (!parse(words)) {
-      throw InputError(path + ":" + std::to_string(number) + ": '" + line +
-                       "': expected '" + expected + "'");
-    }
-  }
-}
 
 bool Parse(std::istream& words, TimedFile* entry) {
   return (words >> entry->timestamp >> entry->file) &&
@@ -86,19 +66,23 @@ std::vector<TimedFile> SortedByTime(std::vector<TimedFile> files) {
 
 std::vector<TimedFile> ReadTimedFiles(const std::string& path) {
   std::vector<TimedFile> files;
-  ForEachLine(path, "timestamp file", [&](std::istream& words) {
-    return Parse(words, &files.emplace_back());
-  });
+  for (const TextLine& line : ReadTextLines(path)) {
+    std::istringstream words(line.text);
+    if (!Parse(words, &files.emplace_back())) line.Refuse("'timestamp file'");
+  }
   return files;
 }
 
 std::vector<AssociatedFiles> ReadAssociations(const std::string& folder) {
   const std::string path = (fs::path(folder) / "associations.txt").string();
   std::vector<AssociatedFiles> pairs;
-  ForEachLine(path, "timestamp file timestamp file", [&](std::istream& words) {
+  for (const TextLine& line : ReadTextLines(path)) {
+    std::istringstream words(line.text);
     AssociatedFiles& pair = pairs.emplace_back();
-    return Parse(words, &pair.color) && Parse(words, &pair.depth);
-  });
+    if (!Parse(words, &pair.color) || !Parse(words, &pair.depth)) {
+      line.Refuse("'timestamp file timestamp file'");
+    }
+  }
   if (!pairs.empty() && ColumnsAreSwapped(folder, pairs.front())) {
     for (AssociatedFiles& pair : pairs) std::swap(pair.color, pair.depth);
   }

@@ -15,20 +15,6 @@
 namespace splitfusion {
 namespace {
 
-/// Next line that is neither blank nor a comment; the comment is cut off.
-bool NextLine(std::istream& stream, std::string* line, int* number) {
-  while (std::getline(stream, *line)) {
-    ++*number;
-    line->erase(std::min(line->find('#'), line->size()));
-    if (line->find_first_not_of(" \t\r") != std::string::npos) return true;
-  }
-  return false;
-}
-
-std::string Place(const std::string& path, int line) {
-  return path + ":" + std::to_string(line);
-}
-
 void CheckCalibration(const std::string& path, const Calibration& calibration) {
   try {
     calibration.Check();
@@ -49,20 +35,17 @@ std::string KeyList() {
 }
 
 std::map<std::string, double> ReadKeys(const std::string& path) {
-  std::ifstream stream = OpenTextFile(path);
   std::map<std::string, double> values;
-  std::string line;
-  for (int number = 0; NextLine(stream, &line, &number);) {
-    std::istringstream words(line);
+  for (const TextLine& line : ReadTextLines(path, /*cut_comments=*/true)) {
+    std::istringstream words(line.text);
     std::string key;
     double value = 0;
     if (!(words >> key >> value) || !(words >> std::ws).eof()) {
-      throw InputError(Place(path, number) + ": '" + line +
-                       "': expected 'key value', the value a number");
+      line.Refuse("'key value', the value a number");
     }
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end() ||
         !values.emplace(key, value).second) {
-      throw InputError(Place(path, number) + ": key '" + key + "': expected " +
+      throw InputError(line.place + ": key '" + key + "': expected " +
                        KeyList() + ", each once");
     }
   }
@@ -87,22 +70,17 @@ void Calibration::Check() const {
 }
 
 Calibration ReadCalibrationLine(const std::string& path) {
-  std::ifstream stream = OpenTextFile(path);
+  const std::string expected = "'fx fy cx cy width height depth_factor'";
+  const std::vector<TextLine> lines =
+      ReadTextLines(path, /*cut_comments=*/true);
+  if (lines.empty()) throw InputError(path + ": no line: expected " + expected);
   Calibration result;
   PinholeCamera& camera = result.camera;
-  std::string line;
-  int number = 0;
-  if (!NextLine(stream, &line, &number)) {
-    throw InputError(path +
-                     ": no line: expected 'fx fy cx cy width height "
-                     "depth_factor'");
-  }
-  std::istringstream words(line);
+  std::istringstream words(lines[0].text);
   if (!(words >> camera.fx >> camera.fy >> camera.cx >> camera.cy >>
         camera.width >> camera.height >> result.depth_scale) ||
       !(words >> std::ws).eof()) {
-    throw InputError(Place(path, number) + ": '" + line +
-                     "': expected 'fx fy cx cy width height depth_factor'");
+    lines[0].Refuse(expected);
   }
   CheckCalibration(path, result);
   return result;

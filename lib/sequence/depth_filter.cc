@@ -36,15 +36,6 @@ bool IsFlying(const cv::Mat& depth, int u, int v) {
   return between && alike <= 2;
 }
 
-cv::Mat Bilateral(const cv::Mat& depth, const DepthFilterOptions& options) {
-  cv::Mat smooth;
-  cv::bilateralFilter(depth, smooth, options.bilateral_diameter,
-                      options.bilateral_sigma_depth,
-                      options.bilateral_sigma_pixels);
-  smooth.setTo(0, depth == 0);
-  return smooth;
-}
-
 }  // namespace
 
 void DepthFilterOptions::Check() const {
@@ -52,12 +43,6 @@ void DepthFilterOptions::Check() const {
               min_depth, "metres >= 0");
   CheckOption(max_depth > min_depth && max_depth <= 100, "max_depth", max_depth,
               "metres above min_depth, <= 100");
-  CheckOption(bilateral_diameter >= 0 && bilateral_diameter <= 31,
-              "bilateral_diameter", bilateral_diameter, "0 (off) to 31 pixels");
-  CheckOption(bilateral_sigma_depth > 0, "bilateral_sigma_depth",
-              bilateral_sigma_depth, "positive metres");
-  CheckOption(bilateral_sigma_pixels > 0, "bilateral_sigma_pixels",
-              bilateral_sigma_pixels, "positive pixels");
 }
 
 cv::Mat DepthInMetres(const cv::Mat& raw, double depth_scale) {
@@ -84,8 +69,7 @@ void RemoveFlyingPixels(cv::Mat* depth) {
 cv::Mat FilterDepth(const cv::Mat& depth, const DepthFilterOptions& options) {
   cv::Mat filtered = depth.clone();
   RemoveOutOfRange(options.min_depth, options.max_depth, &filtered);
-  if (options.remove_flying_pixels) RemoveFlyingPixels(&filtered);
-  if (options.bilateral_diameter > 0) filtered = Bilateral(filtered, options);
+  RemoveFlyingPixels(&filtered);
   return filtered;
 }
 

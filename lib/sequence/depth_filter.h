@@ -9,12 +9,6 @@ namespace splitfusion {
 struct DepthFilterOptions {
   double min_depth = 0.4;  ///< Metres; nearer measurements are dropped.
   double max_depth = 5.0;  ///< Metres; farther measurements are dropped.
-  /// Drop pixels between a near and a far surface that belong to neither.
-  bool remove_flying_pixels = true;
-  /// Diameter of the bilateral filter, pixels; 0 switches it off.
-  int bilateral_diameter = 0;
-  double bilateral_sigma_depth = 0.03;  ///< Metres.
-  double bilateral_sigma_pixels = 2.0;  ///< Pixels.
 
   /// @throw InputError if a value is out of its range.
   void Check() const;
@@ -32,8 +26,8 @@ void RemoveOutOfRange(double min_depth, double max_depth, cv::Mat* depth);
 /// at their own depth. "Clearly" is five times the axial noise and 1 cm.
 void RemoveFlyingPixels(cv::Mat* depth);
 
-/// Applies range, flying-pixel removal and bilateral filter, in this order, to
-/// an HxW 32FC1 depth image (metres, 0 = none).
+/// Applies range and flying-pixel removal, in this order, to an HxW 32FC1 depth
+/// image (metres, 0 = none).
 cv::Mat FilterDepth(const cv::Mat& depth, const DepthFilterOptions& options);
 
 }  // namespace splitfusion

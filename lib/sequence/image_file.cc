@@ -1,11 +1,13 @@
 #include "splitfusion/lib/sequence/image_file.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
@@ -93,6 +95,22 @@ std::optional<ImageHeader> ReadLabelHeader(const std::string& path) {
   const std::optional<ImageHeader> header = ReadImageHeader(path);
   if (header) CheckIsLabel(path, *header);
   return header;
+}
+
+std::string EncodeImage(const std::string& path, const cv::Mat& image,
+                        const std::vector<int>& parameters) {
+  if (image.empty()) throw InputError(path + ": no image to be written");
+  const std::string extension = std::filesystem::path(path).extension();
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(extension, image, bytes, parameters);
+  return {bytes.begin(), bytes.end()};
+}
+
+void WriteImage(const std::string& path, const cv::Mat& image,
+                const std::vector<int>& parameters) {
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << EncodeImage(path, image, parameters);
+  });
 }
 
 std::string ToString(cv::Size size) {

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "splitfusion/lib/sequence/image_header.h"
 
@@ -34,6 +35,19 @@ std::optional<ImageHeader> ReadDepthHeader(const std::string& path);
 ///
 /// @throw InputError as that one, and if it has channels.
 std::optional<ImageHeader> ReadLabelHeader(const std::string& path);
+
+/// Bytes of an image in the format that the path's extension names.
+/// `parameters`: of cv::imwrite().
+///
+/// @throw InputError if there is no image; names the path.
+std::string EncodeImage(const std::string& path, const cv::Mat& image,
+                        const std::vector<int>& parameters = {});
+
+/// Writes EncodeImage() through a temporary name; a missing folder is created.
+///
+/// @throw InputError if the file cannot be written; names the path.
+void WriteImage(const std::string& path, const cv::Mat& image,
+                const std::vector<int>& parameters = {});
 
 /// "640x480".
 std::string ToString(cv::Size size);

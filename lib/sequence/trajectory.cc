@@ -10,24 +10,18 @@
 namespace splitfusion {
 
 Trajectory ReadTumTrajectory(const std::string& path) {
-  std::ifstream stream = OpenTextFile(path);
   Trajectory trajectory;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    std::istringstream words(line);
-    std::string first;
-    if (!(words >> first) || first[0] == '#') continue;
-    words.str(line);
-    words.clear();
+  for (const TextLine& line : ReadTextLines(path)) {
+    std::istringstream words(line.text);
     TimedPose pose;
     Eigen::Vector3d t;
     Eigen::Quaterniond q;
     if (!(words >> pose.timestamp >> t.x() >> t.y() >> t.z() >> q.x() >>
           q.y() >> q.z() >> q.w()) ||
         !t.allFinite() || !(q.norm() > 1e-6)) {
-      throw InputError(path + ":" + std::to_string(number) +
+      throw InputError(line.place +
                        ": expected 'timestamp tx ty tz qx qy qz qw', found '" +
-                       line + "'");
+                       line.text + "'");
     }
     pose.world_from_camera.linear() = q.normalized().toRotationMatrix();
     pose.world_from_camera.translation() = t;

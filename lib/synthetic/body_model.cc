@@ -28,37 +28,17 @@ enum BodyMaterial : std::uint16_t {
   kDark,
 };
 
+/// By BodyMaterial.
 std::vector<Material> BodyMaterials(std::uint32_t seed) {
-  return {{Pattern::kMottled,
-           {0.85f, 0.62f, 0.5f},
-           {0.7f, 0.46f, 0.36f},
-           0.06f,
-           seed + 1},
-          {Pattern::kMottled,
-           {0.22f, 0.13f, 0.08f},
-           {0.4f, 0.26f, 0.15f},
-           0.03f,
-           seed + 2},
-          {Pattern::kPlaid,
-           {0.15f, 0.25f, 0.6f},
-           {0.75f, 0.2f, 0.18f},
-           0.13f,
-           seed + 3},
-          {Pattern::kMottled,
-           {0.14f, 0.22f, 0.3f},
-           {0.42f, 0.5f, 0.55f},
-           0.07f,
-           seed + 4},
-          {Pattern::kStripes,
-           {0.25f, 0.2f, 0.18f},
-           {0.75f, 0.7f, 0.65f},
-           0.035f,
-           seed + 5},
-          {Pattern::kMottled,
-           {0.08f, 0.07f, 0.07f},
-           {0.18f, 0.16f, 0.15f},
-           0.04f,
-           seed + 6}};
+  std::vector<Material> materials = {
+      {Pattern::kMottled, {0.85f, 0.62f, 0.5f}, {0.7f, 0.46f, 0.36f}, 0.06f},
+      {Pattern::kMottled, {0.22f, 0.13f, 0.08f}, {0.4f, 0.26f, 0.15f}, 0.03f},
+      {Pattern::kPlaid, {0.15f, 0.25f, 0.6f}, {0.75f, 0.2f, 0.18f}, 0.13f},
+      {Pattern::kMottled, {0.14f, 0.22f, 0.3f}, {0.42f, 0.5f, 0.55f}, 0.07f},
+      {Pattern::kStripes, {0.25f, 0.2f, 0.18f}, {0.75f, 0.7f, 0.65f}, 0.035f},
+      {Pattern::kMottled, {0.08f, 0.07f, 0.07f}, {0.18f, 0.16f, 0.15f}, 0.04f}};
+  for (Material& material : materials) material.seed = ++seed;
+  return materials;
 }
 
 std::uint16_t HeadMaterial(const Vector3f& p) {

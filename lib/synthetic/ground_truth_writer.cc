@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
+#include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {
 namespace {
@@ -43,11 +43,6 @@ bool IsSeen(const Vector3f& point, const Vector3f& normal,
          std::abs(depth(v, u) - point.z()) < kSeenTolerance;
 }
 
-void WriteJson(const std::string& path, const nlohmann::json& json) {
-  WriteFileAtomically(path,
-                      [&](std::ostream& out) { out << json.dump(1) << '\n'; });
-}
-
 }  // namespace
 
 GroundTruthWriter::GroundTruthWriter(const std::string& directory,
@@ -65,10 +60,7 @@ void GroundTruthWriter::AddFrame(const SyntheticFrame& frame) {
   const std::string& stem = frame.frame.stem;
   const int index = frame.frame.index;
   trajectory_.push_back({frame.frame.timestamp, frame.world_from_camera});
-  const std::string label = directory_ + "/label/" + stem + ".png";
-  if (!cv::imwrite(label, frame.labels)) {
-    throw InputError(label + ": cannot be written (disk full?)");
-  }
+  WriteImage(directory_ + "/label/" + stem + ".png", frame.labels);
   for (const SyntheticInstance& instance : scene_.instances()) {
     if (!instance.moving || index % options_.mesh_every != 0) continue;
     WritePly(directory_ + "/mesh/inst" + std::to_string(instance.id) + "_" +
@@ -128,8 +120,8 @@ void GroundTruthWriter::WriteLabels() const {
                          {"rigid", instance.rigid},
                          {"moving", instance.moving}});
   }
-  WriteJson(directory_ + "/labels.json",
-            {{"background", 0}, {"instances", instances}});
+  WriteJson<nlohmann::json>(directory_ + "/labels.json",
+                            {{"background", 0}, {"instances", instances}}, 1);
 }
 
 void GroundTruthWriter::WriteTracks() const {
@@ -150,18 +142,19 @@ void GroundTruthWriter::WriteTracks() const {
 
 void GroundTruthWriter::WriteConfig() const {
   const SyntheticOptions& options = scene_.options();
-  WriteJson(directory_ + "/config.json",
-            {{"scene", ToString(options.scene)},
-             {"frames", options.frames},
-             {"width", options.width},
-             {"height", options.height},
-             {"seed", options.seed},
-             {"noise", options.noise},
-             {"exact_masks", options.exact_masks},
-             {"frame_rate", options.frame_rate},
-             {"camera_motion", options.camera_motion},
-             {"subject_speed", options.subject_speed},
-             {"track_points", options.track_points}});
+  WriteJson<nlohmann::json>(directory_ + "/config.json",
+                            {{"scene", ToString(options.scene)},
+                             {"frames", options.frames},
+                             {"width", options.width},
+                             {"height", options.height},
+                             {"seed", options.seed},
+                             {"noise", options.noise},
+                             {"exact_masks", options.exact_masks},
+                             {"frame_rate", options.frame_rate},
+                             {"camera_motion", options.camera_motion},
+                             {"subject_speed", options.subject_speed},
+                             {"track_points", options.track_points}},
+                            1);
 }
 
 }  // namespace splitfusion

@@ -89,21 +89,11 @@ Vector3f Deform(const Deformation& d, const Vector3f& rest) {
 
 SoftObject::SoftObject(const Vector3f& base, std::uint32_t seed) : base_(base) {
   rest_.mesh = MeshRoundCones(ToyCones(), kBlend, kVoxel);
-  rest_.materials = {{Pattern::kChecker,
-                      {0.85f, 0.6f, 0.15f},
-                      {0.5f, 0.25f, 0.1f},
-                      0.055f,
-                      seed + 71},
-                     {Pattern::kStripes,
-                      {0.9f, 0.82f, 0.65f},
-                      {0.35f, 0.55f, 0.6f},
-                      0.03f,
-                      seed + 72},
-                     {Pattern::kMottled,
-                      {0.05f, 0.05f, 0.06f},
-                      {0.12f, 0.1f, 0.1f},
-                      0.03f,
-                      seed + 73}};
+  rest_.materials = {
+      {Pattern::kChecker, {0.85f, 0.6f, 0.15f}, {0.5f, 0.25f, 0.1f}, 0.055f},
+      {Pattern::kStripes, {0.9f, 0.82f, 0.65f}, {0.35f, 0.55f, 0.6f}, 0.03f},
+      {Pattern::kMottled, {0.05f, 0.05f, 0.06f}, {0.12f, 0.1f, 0.1f}, 0.03f}};
+  for (Material& material : rest_.materials) material.seed = seed++ + 71;
   rest_.material_at = ToyMaterialAt;
   rest_.triangle_instances.assign(rest_.mesh.triangles.size(), kSoftObjectId);
 }

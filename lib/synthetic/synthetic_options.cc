@@ -1,37 +1,28 @@
 #include "splitfusion/lib/synthetic/synthetic_options.h"
 
+#include <algorithm>
+#include <array>
+
 #include "splitfusion/lib/base/error.h"
 
 namespace splitfusion {
 namespace {
 
-constexpr SyntheticSceneKind kSceneKinds[] = {
-    SyntheticSceneKind::kRoomPerson, SyntheticSceneKind::kRoom,
-    SyntheticSceneKind::kPerson, SyntheticSceneKind::kSoftObject};
+/// By SyntheticSceneKind.
+constexpr std::array<const char*, 4> kSceneNames = {"room_person", "room",
+                                                    "person", "soft_object"};
 
 }  // namespace
 
 std::string ToString(SyntheticSceneKind kind) {
-  switch (kind) {
-    case SyntheticSceneKind::kRoomPerson:
-      return "room_person";
-    case SyntheticSceneKind::kRoom:
-      return "room";
-    case SyntheticSceneKind::kPerson:
-      return "person";
-    case SyntheticSceneKind::kSoftObject:
-      return "soft_object";
-  }
-  throw InputError("scene kind: not one of the enumeration");
+  return kSceneNames[static_cast<std::size_t>(kind)];
 }
 
 SyntheticSceneKind ParseSyntheticSceneKind(const std::string& word) {
-  std::string known;
-  for (const SyntheticSceneKind kind : kSceneKinds) {
-    if (word == ToString(kind)) return kind;
-    known += (known.empty() ? "" : ", ") + ToString(kind);
-  }
-  throw OptionError("scene", word, "one of " + known);
+  const auto found = std::find(kSceneNames.begin(), kSceneNames.end(), word);
+  CheckOption(found != kSceneNames.end(), "scene", word,
+              "one of room_person, room, person, soft_object");
+  return static_cast<SyntheticSceneKind>(found - kSceneNames.begin());
 }
 
 void SyntheticOptions::Check() const {

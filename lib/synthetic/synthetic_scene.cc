@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/error.h"
@@ -165,9 +164,7 @@ double SyntheticScene::Timestamp(int frame) const {
 }
 
 std::string SyntheticScene::Stem(int frame) const {
-  char stem[64];
-  std::snprintf(stem, sizeof(stem), "%.6f", Timestamp(frame));
-  return stem;
+  return cv::format("%.6f", Timestamp(frame));
 }
 
 Rigid3d SyntheticScene::WorldFromCamera(int frame) const {

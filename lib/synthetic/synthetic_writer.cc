@@ -4,13 +4,14 @@
 
 #include <filesystem>
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/pending_folder.h"
+#include "splitfusion/lib/sequence/image_file.h"
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/synthetic/ground_truth_writer.h"
 #include "splitfusion/lib/synthetic/synthetic_scene.h"
@@ -23,17 +24,7 @@ namespace fs = std::filesystem;
 constexpr double kDepthFactor = 5000;    // Units per metre of depth images.
 constexpr char kProgram[] = "sf_synth";  // Of the marker.
 
-void WriteImage(const fs::path& path, const cv::Mat& image) {
-  bool written = false;
-  try {
-    written =
-        cv::imwrite(path.string(), image, {cv::IMWRITE_PNG_COMPRESSION, 2});
-  } catch (const cv::Exception&) {
-  }
-  if (!written) {
-    throw InputError(path.string() + ": cannot be written (disk full?)");
-  }
-}
+const std::vector<int> kPng = {cv::IMWRITE_PNG_COMPRESSION, 2};
 
 nlohmann::json ToJson(const InstanceMask& detection, int index) {
   const cv::Rect box = cv::boundingRect(detection.mask);
@@ -55,9 +46,8 @@ void WriteDetections(const fs::path& folder, const std::string& stem,
   for (std::size_t i = 0; i < detections.size(); ++i) {
     list.push_back(ToJson(detections[i], static_cast<int>(i) + 1));
   }
-  WriteImage(folder / (stem + ".png"), indices);
-  WriteFileAtomically((folder / (stem + ".json")).string(),
-                      [&](std::ostream& out) { out << list.dump() << '\n'; });
+  WriteImage(folder / (stem + ".png"), indices, kPng);
+  WriteJson((folder / (stem + ".json")).string(), list);
 }
 
 class SequenceFolder {
@@ -74,9 +64,9 @@ class SequenceFolder {
     cv::Mat depth;
     frame.frame.depth.convertTo(depth, CV_16UC1, kDepthFactor);
     tbb::parallel_invoke(
-        [&] { WriteImage(path_ / "rgb" / file, frame.frame.color); },
+        [&] { WriteImage(path_ / "rgb" / file, frame.frame.color, kPng); },
         [&] {
-          WriteImage(path_ / "depth" / file, depth);
+          WriteImage(path_ / "depth" / file, depth, kPng);
           WriteDetections(path_ / "masks_noisy", frame.frame.stem,
                           scene_.Detections(frame), depth.size());
         });

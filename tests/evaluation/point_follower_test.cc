@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/evaluation/surface_attachment.h"
 #include "support/bent_plate.h"
 #include "support/temporary_folder.h"
 
@@ -133,7 +134,7 @@ TEST(SurfaceAttacher, PrefersMaskThenForegroundThenNearest) {
   const AnimatedSurface wall = PlateSurface(0, 1.00f);
   const AnimatedSurface person = PlateSurface(1, 0.98f);
   const AnimatedSurface chair = PlateSurface(2, 0.92f);
-  const SurfaceAttacher attacher({&wall, &person, &chair}, 0, {});
+  const SurfaceAttacher attacher({&wall, &person, &chair}, 0);
   const auto id = [&](double z, int mask) {
     return attacher.Attach({0, 0, z}, mask)->surface->recorded().id;
   };
@@ -149,8 +150,8 @@ TEST(SurfaceAttacher, LeavesOutWhatFacesAway) {
   RecordedSurface turned = plate.recorded();
   for (Eigen::Vector3i& t : turned.mesh.triangles) std::swap(t[0], t[1]);
   const AnimatedSurface back(turned);
-  EXPECT_TRUE(SurfaceAttacher({&plate}, 0, {}).Attach({0, 0, 1}, 0));
-  EXPECT_FALSE(SurfaceAttacher({&back}, 0, {}).Attach({0, 0, 1}, 0));
+  EXPECT_TRUE(SurfaceAttacher({&plate}, 0).Attach({0, 0, 1}, 0));
+  EXPECT_FALSE(SurfaceAttacher({&back}, 0).Attach({0, 0, 1}, 0));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "splitfusion/lib/base/json_file.h"
 #include "support/sample_report.h"
 
 namespace splitfusion {

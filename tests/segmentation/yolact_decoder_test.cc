@@ -59,20 +59,20 @@ TEST(FastNms, SuppressedBoxesSuppressToo) {
 
 /// Outputs for an input of 32x32, 69 priors, two classes, two prototypes of
 /// 8x8 like those of the other decoder's test; nothing is detected yet.
-class DecodeYolactTest : public testing::Test {
+class YolactDecoderTest : public testing::Test {
  protected:
-  DecodeYolactTest() {
-    outputs_.loc = {"loc", Tensor({1, 69, 4})};
-    outputs_.conf = {"conf", Tensor({1, 69, 3})};
-    outputs_.mask = {"mask", Tensor({1, 69, 2})};
-    outputs_.proto = {"proto", Tensor({8, 8, 2})};
+  YolactDecoderTest() {
+    outputs_[0] = {"loc", Tensor({1, 69, 4})};
+    outputs_[1] = {"conf", Tensor({1, 69, 3})};
+    outputs_[2] = {"mask", Tensor({1, 69, 2})};
+    outputs_[3] = {"proto", Tensor({8, 8, 2})};
     for (int y = 0; y < 8; ++y) {
       for (int x = 0; x < 8; ++x) {
-        outputs_.proto.data.at<float>(y, x, 0) = static_cast<float>(x - 3);
-        outputs_.proto.data.at<float>(y, x, 1) = static_cast<float>(y - 2);
+        outputs_[3].data.at<float>(y, x, 0) = static_cast<float>(x - 3);
+        outputs_[3].data.at<float>(y, x, 1) = static_cast<float>(y - 2);
       }
     }
-    for (int p = 0; p < 69; ++p) outputs_.conf.data.at<float>(0, p, 0) = 1;
+    for (int p = 0; p < 69; ++p) outputs_[1].data.at<float>(0, p, 0) = 1;
   }
 
   static cv::Mat Tensor(const std::vector<int>& shape) {
@@ -83,28 +83,29 @@ class DecodeYolactTest : public testing::Test {
   void Detect(int prior, const cv::Rect2f& box, float class0, float class1,
               float a, float b) {
     const CenterBox p = YolactPriors(32)[prior];
-    float* loc = outputs_.loc.data.ptr<float>(0, prior);
+    float* loc = outputs_[0].data.ptr<float>(0, prior);
     loc[0] = (box.x + box.width / 2 - p.cx) / (0.1f * p.w);
     loc[1] = (box.y + box.height / 2 - p.cy) / (0.1f * p.h);
     loc[2] = std::log(box.width / p.w) / 0.2f;
     loc[3] = std::log(box.height / p.h) / 0.2f;
-    float* conf = outputs_.conf.data.ptr<float>(0, prior);
+    float* conf = outputs_[1].data.ptr<float>(0, prior);
     conf[1] = class0;
     conf[2] = class1;
-    float* mask = outputs_.mask.data.ptr<float>(0, prior);
+    float* mask = outputs_[2].data.ptr<float>(0, prior);
     mask[0] = a;
     mask[1] = b;
   }
 
   std::vector<NetworkInstance> Decode(cv::Size frame,
                                       const DecoderOptions& options = {}) {
-    return DecodeYolact(outputs_, {Stretch(frame, {32, 32}), 2}, options);
+    return MakeYolactDecoder()->Decode(outputs_, {Stretch(frame, {32, 32}), 2},
+                                       options);
   }
 
-  YolactOutputs outputs_;
+  std::vector<NetworkTensor> outputs_{4};
 };
 
-TEST_F(DecodeYolactTest, MasksAreCroppedInPrototypesAndInterpolated) {
+TEST_F(YolactDecoderTest, MasksAreCroppedInPrototypesAndInterpolated) {
   Detect(40, {0.22f, 0.10f, 0.5f, 0.5f}, 0.1f, 0.8f, 1.0f, 0.6f);
   const std::vector<NetworkInstance> found = Decode({64, 48});
   ASSERT_EQ(found.size(), 1u);
@@ -125,7 +126,7 @@ TEST_F(DecodeYolactTest, MasksAreCroppedInPrototypesAndInterpolated) {
   ExpectMaskOf(NaiveResize(probability, {64, 48}), found[0].mask);
 }
 
-TEST_F(DecodeYolactTest, EveryClassOfAPriorIsJudgedOnItsOwn) {
+TEST_F(YolactDecoderTest, EveryClassOfAPriorIsJudgedOnItsOwn) {
   Detect(10, {0.1f, 0.1f, 0.4f, 0.4f}, 0.5f, 0.45f, 1, 1);
   Detect(11, {0.1f, 0.1f, 0.4f, 0.4f}, 0.6f, 0.30f, 1, 1);
   Detect(20, {0.6f, 0.6f, 0.3f, 0.3f}, 0.04f, 0.03f, 1, 1);
@@ -140,22 +141,22 @@ TEST_F(DecodeYolactTest, EveryClassOfAPriorIsJudgedOnItsOwn) {
   EXPECT_EQ(Decode({64, 48}, {0.02, 1.0, 9}).size(), 4u);
 }
 
-TEST_F(DecodeYolactTest, NamesOutputsOfAnotherShape) {
-  outputs_.conf.data = Tensor({1, 69, 81});
+TEST_F(YolactDecoderTest, NamesOutputsOfAnotherShape) {
+  outputs_[1].data = Tensor({1, 69, 81});
   ExpectInputError(
       [&] {
         Decode({64, 48});
       },
       "output 'conf' is 1x69x81: expected 1x69x3, background and "
       "2 classes");
-  outputs_.mask.data = Tensor({1, 69, 32});
-  outputs_.conf.data = Tensor({1, 69, 3});
+  outputs_[2].data = Tensor({1, 69, 32});
+  outputs_[1].data = Tensor({1, 69, 3});
   ExpectInputError(
       [&] {
         Decode({64, 48});
       },
       "output 'mask' is 1x69x32: expected 1x69x2");
-  outputs_.loc.data = Tensor({1, 19248, 4});
+  outputs_[0].data = Tensor({1, 19248, 4});
   ExpectInputError(
       [&] {
         Decode({64, 48});

@@ -20,28 +20,33 @@ using Anchor = std::array<float, 4 + kClasses + kPrototypes>;
 
 /// Outputs for an input of 64x32 whose prototypes are 16x8: prototype 0 grows
 /// from left (-4) to right, prototype 1 from top to bottom.
-Yolov8SegOutputs MakeOutputs(const std::vector<Anchor>& anchors) {
-  Yolov8SegOutputs outputs;
+std::vector<NetworkTensor> MakeOutputs(const std::vector<Anchor>& anchors) {
+  std::vector<NetworkTensor> outputs(2);
   const int rows = 4 + kClasses + kPrototypes;
   const int columns = static_cast<int>(anchors.size());
-  outputs.detections = {"output0",
-                        cv::Mat(std::vector<int>{1, rows, columns}, CV_32F)};
+  outputs[0] = {"output0", cv::Mat(std::vector<int>{1, rows, columns}, CV_32F)};
   for (int row = 0; row < rows; ++row) {
     for (int a = 0; a < columns; ++a) {
-      outputs.detections.data.at<float>(0, row, a) = anchors[a][row];
+      outputs[0].data.at<float>(0, row, a) = anchors[a][row];
     }
   }
-  outputs.prototypes = {
-      "output1", cv::Mat(std::vector<int>{1, kPrototypes, 8, 16}, CV_32F)};
+  outputs[1] = {"output1",
+                cv::Mat(std::vector<int>{1, kPrototypes, 8, 16}, CV_32F)};
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 16; ++x) {
       const int p0[] = {0, 0, y, x};
       const int p1[] = {0, 1, y, x};
-      outputs.prototypes.data.at<float>(p0) = 0.5f * static_cast<float>(x - 8);
-      outputs.prototypes.data.at<float>(p1) = 0.5f * static_cast<float>(y - 4);
+      outputs[1].data.at<float>(p0) = 0.5f * static_cast<float>(x - 8);
+      outputs[1].data.at<float>(p1) = 0.5f * static_cast<float>(y - 4);
     }
   }
   return outputs;
+}
+
+std::vector<NetworkInstance> Decode(const std::vector<NetworkTensor>& outputs,
+                                    const DecoderInput& input,
+                                    const DecoderOptions& options) {
+  return MakeYolov8SegDecoder()->Decode(outputs, input, options);
 }
 
 DecoderInput InputFor(cv::Size frame) {
@@ -60,11 +65,11 @@ cv::Mat_<float> Probability(double a, double b) {
   return probability;
 }
 
-TEST(DecodeYolov8Seg, MasksAreTheSigmoidOfPrototypesCutByTheirBox) {
-  const Yolov8SegOutputs outputs =
+TEST(Yolov8SegDecoder, MasksAreTheSigmoidOfPrototypesCutByTheirBox) {
+  const std::vector<NetworkTensor> outputs =
       MakeOutputs({{30, 16, 40, 20, 0.1f, 0.7f, 0.2f, 1.0f, -0.7f}});
   const std::vector<NetworkInstance> found =
-      DecodeYolov8Seg(outputs, InputFor({128, 64}), {});
+      Decode(outputs, InputFor({128, 64}), {});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].class_index, 1);
   EXPECT_FLOAT_EQ(static_cast<float>(found[0].score), 0.7f);
@@ -78,11 +83,11 @@ TEST(DecodeYolov8Seg, MasksAreTheSigmoidOfPrototypesCutByTheirBox) {
   ExpectMaskOf(expected, found[0].mask);
 }
 
-TEST(DecodeYolov8Seg, LetterboxedFramesGetTheirPartOfTheMask) {
-  const Yolov8SegOutputs outputs =
+TEST(Yolov8SegDecoder, LetterboxedFramesGetTheirPartOfTheMask) {
+  const std::vector<NetworkTensor> outputs =
       MakeOutputs({{32, 16, 64, 32, 0.9f, 0, 0, 1.0f, 0.3f}});
   const std::vector<NetworkInstance> found =
-      DecodeYolov8Seg(outputs, InputFor({50, 50}), {});
+      Decode(outputs, InputFor({50, 50}), {});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].box, cv::Rect2d(0, 0, 50, 50));
   const cv::Mat_<float> input = NaiveResize(Probability(1.0, 0.3), {64, 32});
@@ -90,8 +95,8 @@ TEST(DecodeYolov8Seg, LetterboxedFramesGetTheirPartOfTheMask) {
                found[0].mask);
 }
 
-TEST(DecodeYolov8Seg, SuppressesDoublesWithinAClassOnly) {
-  const Yolov8SegOutputs outputs = MakeOutputs({
+TEST(Yolov8SegDecoder, SuppressesDoublesWithinAClassOnly) {
+  const std::vector<NetworkTensor> outputs = MakeOutputs({
       {20, 16, 20, 20, 0.6f, 0, 0, 1, 0},
       {22, 16, 20, 20, 0.8f, 0, 0, 1, 0},  // IoU with the first 18 / 22.
       {22, 16, 20, 20, 0, 0.7f, 0, 1, 0},  // Another class.
@@ -99,7 +104,7 @@ TEST(DecodeYolov8Seg, SuppressesDoublesWithinAClassOnly) {
       {50, 16, 20, 20, 0.2f, 0.1f, 0, 1, 0},
   });
   const std::vector<NetworkInstance> found =
-      DecodeYolov8Seg(outputs, InputFor({64, 32}), {});
+      Decode(outputs, InputFor({64, 32}), {});
   ASSERT_EQ(found.size(), 3u);
   EXPECT_FLOAT_EQ(static_cast<float>(found[0].score), 0.8f);
   EXPECT_EQ(found[0].class_index, 0);
@@ -108,14 +113,14 @@ TEST(DecodeYolov8Seg, SuppressesDoublesWithinAClassOnly) {
   EXPECT_EQ(found[2].box, cv::Rect2d(40, 6, 20, 20));
 }
 
-TEST(DecodeYolov8Seg, OptionsChooseWhatIsKept) {
-  const Yolov8SegOutputs outputs = MakeOutputs({
+TEST(Yolov8SegDecoder, OptionsChooseWhatIsKept) {
+  const std::vector<NetworkTensor> outputs = MakeOutputs({
       {20, 16, 20, 20, 0.6f, 0, 0, 1, 0},
       {22, 16, 20, 20, 0.8f, 0, 0, 1, 0},
       {50, 16, 20, 20, 0.2f, 0, 0, 1, 0},
   });
   const auto count = [&](const DecoderOptions& options) {
-    return DecodeYolov8Seg(outputs, InputFor({64, 32}), options).size();
+    return Decode(outputs, InputFor({64, 32}), options).size();
   };
   EXPECT_EQ(count({0.1, 0.5, 100}), 2u);
   EXPECT_EQ(count({0.7, 0.5, 100}), 1u);
@@ -123,16 +128,16 @@ TEST(DecodeYolov8Seg, OptionsChooseWhatIsKept) {
   EXPECT_EQ(count({0.1, 0.9, 1}), 1u);
 }
 
-TEST(DecodeYolov8Seg, NamesOutputsOfAnotherShape) {
-  Yolov8SegOutputs outputs = MakeOutputs({Anchor{}, Anchor{}});
+TEST(Yolov8SegDecoder, NamesOutputsOfAnotherShape) {
+  std::vector<NetworkTensor> outputs = MakeOutputs({Anchor{}, Anchor{}});
   DecoderInput input = InputFor({64, 32});
   input.classes = 80;
-  ExpectInputError([&] { DecodeYolov8Seg(outputs, input, {}); },
+  ExpectInputError([&] { Decode(outputs, input, {}); },
                    "output 'output0' is 1x9x2: expected 1x86xN, a box, 80 "
                    "classes");
   input.classes = kClasses;
   input.placement.input = {64, 64};
-  ExpectInputError([&] { DecodeYolov8Seg(outputs, input, {}); },
+  ExpectInputError([&] { Decode(outputs, input, {}); },
                    "output 'output1' is 1x2x8x16: expected 1xMx16x16");
 }
 

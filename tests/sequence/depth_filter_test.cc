@@ -61,35 +61,11 @@ TEST(RemoveFlyingPixels, KeepsCleanEdgesAndSlopes) {
   EXPECT_EQ(cv::countNonZero(kept), 400);
 }
 
-TEST(FilterDepth, BilateralSmoothsNoiseButNotEdgesAndHoles) {
-  cv::Mat_<float> depth = Step();
-  cv::RNG random(3);
-  for (float& z : depth) z += static_cast<float>(random.gaussian(0.01));
-  depth(3, 3) = 0;
-  DepthFilterOptions options;
-  options.bilateral_diameter = 7;
-  const cv::Mat_<float> smooth = FilterDepth(depth, options);
-  const auto spread = [](const cv::Mat& part) {
-    cv::Scalar mean, deviation;
-    cv::meanStdDev(part, mean, deviation);
-    return deviation[0];
-  };
-  const cv::Rect flat(11, 5, 8, 14);
-  EXPECT_LT(spread(smooth(flat)), 0.6 * spread(depth(flat)));
-  EXPECT_NEAR(smooth(10, 9), 1.0, 0.03);
-  EXPECT_NEAR(smooth(10, 10), 2.0, 0.03);
-  EXPECT_EQ(smooth(3, 3), 0.0f);
-  EXPECT_NEAR(smooth(3, 4), 1.0, 0.03);
-}
-
 TEST(DepthFilterOptions, NamesFieldValueAndBound) {
   DepthFilterOptions options;
   options.max_depth = 0.2;
   ExpectInputError([&] { options.Check(); },
                    "max_depth = 0.2: expected metres above min_depth");
-  options = {};
-  options.bilateral_diameter = -1;
-  ExpectInputError([&] { options.Check(); }, "bilateral_diameter = -1");
 }
 
 }  // namespace

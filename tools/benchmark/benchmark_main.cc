@@ -13,7 +13,8 @@
 #include "benchmark_report.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/base/freed_memory.h"
+#include "splitfusion/lib/base/json_file.h"
+#include "splitfusion/lib/base/process_memory.h"
 
 namespace splitfusion {
 namespace {
@@ -104,8 +105,7 @@ int Run(int argc, char** argv) {
   }
   if (!report.errors().empty()) return 1;
   if (json.empty()) return 0;
-  WriteFileAtomically(
-      json, [&](std::ostream& out) { out << report.ToJson().dump(2) << '\n'; });
+  WriteJson(json, report.ToJson(), 2);
   return 0;
 }
 

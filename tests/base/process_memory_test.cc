@@ -1,4 +1,4 @@
-#include "splitfusion/lib/base/freed_memory.h"
+#include "splitfusion/lib/base/process_memory.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,7 +1,12 @@
-#ifndef SPLITFUSION_LIB_BASE_FREED_MEMORY_H_
-#define SPLITFUSION_LIB_BASE_FREED_MEMORY_H_
+#ifndef SPLITFUSION_LIB_BASE_PROCESS_MEMORY_H_
+#define SPLITFUSION_LIB_BASE_PROCESS_MEMORY_H_
+
+#include <cstdint>
 
 namespace splitfusion {
+
+/// Largest resident size of this process so far, bytes.
+std::int64_t PeakMemoryBytes();
 
 /// Lets freed memory be used again instead of giving it back to the system:
 /// every frame asks for the same images and lists, megabytes each, and fresh
@@ -11,4 +16,4 @@ void KeepFreedMemory();
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_BASE_FREED_MEMORY_H_
+#endif  // SPLITFUSION_LIB_BASE_PROCESS_MEMORY_H_

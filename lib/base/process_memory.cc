@@ -1,12 +1,18 @@
-#include "splitfusion/lib/base/freed_memory.h"
+#include "splitfusion/lib/base/process_memory.h"
 
-#include <cstdlib>
+#include <sys/resource.h>
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
 namespace splitfusion {
+
+std::int64_t PeakMemoryBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{usage.ru_maxrss} * 1024;  // Linux counts in KiB.
+}
 
 void KeepFreedMemory() {
 #ifdef __GLIBC__
