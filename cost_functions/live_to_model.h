@@ -39,15 +39,13 @@ struct LiveToModel {
 };
 
 /// Over all pairs of what the correspondences leave over, divided by the number
-/// of these and of the correspondences: few pairs weigh little. Its weight is
-/// annealed, (anneal - 1) times the one it is given: a part is pulled to where
-/// the correspondences hold it, and they alone have the last word. Its loss
-/// must not forget large residuals, as Tukey's does.
+/// of these and of the correspondences: few pairs weigh little. Its loss must
+/// not forget large residuals, as Tukey's does.
 class LiveToModelTerm : public EnergyTerm {
  public:
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
-    if (input.lost == nullptr || input.anneal <= 1) return;
+    if (input.lost == nullptr) return;
     const WarpField warp(input.graph);
     std::vector<const ModelSample*> samples;
     std::vector<LiveToModel> functors;
@@ -58,8 +56,7 @@ class LiveToModelTerm : public EnergyTerm {
           c.target - warp.WarpPoint(c.model.skinning, c.model.point);
       samples.push_back(&c.model);
       functors.push_back({way.normalized().cast<double>(),
-                          c.target.cast<double>(),
-                          std::sqrt((input.anneal - 1) * c.weight)});
+                          c.target.cast<double>(), std::sqrt(c.weight)});
       total += c.weight;
     }
     sink->AddWarpedPoints(samples, functors, total);

@@ -111,7 +111,7 @@ std::vector<TrackingStage> TrackerOptions::NonRigidStages() const {
   const auto gates = [&](double distance, bool coarse) {
     return AssociationGates{distance * non_rigid_distance,
                             Radians(non_rigid_angle), Radians(grazing_angle),
-                            coarse, lost_distance};
+                            coarse, coarse ? lost_distance : 0};
   };
   return {{4, 3, gates(1, true)}, {4, 5, gates(0.5, false)}};
 }
@@ -139,17 +139,17 @@ void TrackerOptions::List(OptionList* list) {
   list->Number("non_rigid_angle", &non_rigid_angle, {0, 180, true}, "degrees",
                "Largest angle of normals in the non-rigid stages.")
       .common = true;
-  list->Number("lost_distance", &lost_distance, Range::AtLeast(0), "metres",
-               "In the non-rigid stages live points without model are paired, "
-               "for live_to_model, with model points astray up to this far.")
+  list->Number(
+          "lost_distance", &lost_distance, Range::AtLeast(0), "metres",
+          "In the first non-rigid stage live points without model are paired, "
+          "for live_to_model, with model points astray up to this far.")
       .common = true;
   list->Number("grazing_angle", &grazing_angle, {0, 90, true}, "degrees",
                "Between live normal and view ray; beyond, depth is not used.");
   list->Number(
           "prior_anneal", &prior_anneal, Range::AtLeast(1), "",
           "Over the non-rigid rounds of a frame, anneal falls from this to "
-          "1; temporal_arap and live_to_model have (anneal - 1) times their "
-          "weight.")
+          "1; temporal_arap has (anneal - 1) times its weight.")
       .common = true;
   list->Number(
       "settled", &settled, Range::AtLeast(0), "",

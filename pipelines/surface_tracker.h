@@ -29,7 +29,9 @@ struct TrackerOptions {
   double rigid_angle = 30;       ///< First one of normals, degrees.
   double non_rigid_distance = 0.10;  ///< First gate of the non-rigid stages.
   double non_rigid_angle = 45;       ///< Of normals, degrees.
-  double lost_distance = 0.25;       ///< Of Association::lost, metres.
+  /// Of Association::lost in the first non-rigid stage, metres. In the second
+  /// one the correspondences have the last word.
+  double lost_distance = 0.25;
   double grazing_angle = 75;  ///< Between live normal and view ray, degrees.
   /// EnergyInput::anneal falls from this to 1 over the non-rigid rounds.
   double prior_anneal = 8;

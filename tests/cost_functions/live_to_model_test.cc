@@ -54,7 +54,7 @@ TEST(LiveToModelTerm, IsTheSquaredDistanceWhereverTheCameraIs) {
     const DeformationGraph graph = MakeRigidGraph(motion);
     const AddedResiduals added = ResidualsOf(
         LiveToModelTerm(),
-        {graph, none, PinholeCamera(), nullptr, nullptr, 2, &lost}, kOptions);
+        {graph, none, PinholeCamera(), nullptr, nullptr, 1, &lost}, kOptions);
     EXPECT_EQ(added.residual_vectors, static_cast<int>(lost.size()));
     EXPECT_NEAR(EnergyOf(graph, added.residuals), 25, 1e-3);
   }
@@ -67,7 +67,7 @@ TEST(LiveToModelTerm, APairIsWorthACorrespondence) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   const AddedResiduals added = ResidualsOf(
       LiveToModelTerm(),
-      {graph, found, PinholeCamera(), nullptr, nullptr, 2, &lost}, kOptions);
+      {graph, found, PinholeCamera(), nullptr, nullptr, 1, &lost}, kOptions);
   EXPECT_NEAR(EnergyOf(graph, added.residuals),
               25.0 * lost.size() / (found.size() + lost.size()), 1e-3);
 }

@@ -268,7 +268,7 @@ double ErrorOfSwungArm(const std::string& terms, SurfaceReport* report) {
 
 TEST(SurfaceTracker, FindsAnArmThatMovedFartherThanItsWidth) {
   SurfaceReport without, with;
-  const std::string seen = "live_to_model(weight=0.15,loss=huber,scale=0.013)";
+  const std::string seen = "live_to_model(weight=1,loss=huber,scale=0.013)";
   EXPECT_GT(ErrorOfSwungArm("", &without), 0.04);
   EXPECT_LT(ErrorOfSwungArm(seen, &with), 0.025);
   const auto lost_pairs = [](const SurfaceReport& report, bool first) {
