@@ -38,8 +38,9 @@ struct LiveToModel {
   }
 };
 
-/// Over all pairs of what the correspondences leave over, divided by the number
-/// of these and of the correspondences: few pairs weigh little. Its loss must
+/// Over all pairs of what the correspondences leave over, divided by the sum of
+/// their confidences and of those of the correspondences: few pairs weigh
+/// little. Its loss must
 /// not forget large residuals, as Tukey's does.
 class LiveToModelTerm : public EnergyTerm {
  public:

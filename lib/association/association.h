@@ -29,7 +29,8 @@ struct Association {
   /// Of what the correspondences leave over on both sides: live points of the
   /// surface that no sample was found for, and samples that would be in view
   /// but are not where the model has them. A part that moved farther than the
-  /// gates is both.
+  /// gates is both. None if gates.lost_distance is 0, or if the association
+  /// does not know what is hidden.
   std::vector<Correspondence> lost = {};
 };
 

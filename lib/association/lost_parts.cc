@@ -22,8 +22,8 @@ cv::Mat_<uchar> CoveredCells(const std::vector<Correspondence>& found,
   cv::Mat_<uchar> covered(image.height / stride + 1, image.width / stride + 1,
                           uchar(0));
   for (const Correspondence& c : found) {
-    covered(static_cast<int>(c.pixel.y()) / stride,
-            static_cast<int>(c.pixel.x()) / stride) = 255;
+    covered(static_cast<int>(std::lround(c.pixel.y())) / stride,
+            static_cast<int>(std::lround(c.pixel.x())) / stride) = 255;
   }
   cv::dilate(covered, covered, cv::Mat());
   return covered;
@@ -32,10 +32,11 @@ cv::Mat_<uchar> CoveredCells(const std::vector<Correspondence>& found,
 }  // namespace
 
 OpenPoints FindOpenPoints(const LiveView& live, std::uint16_t surface,
-                          const std::vector<Correspondence>& found,
-                          int stride) {
+                          const std::vector<Correspondence>& found, int stride,
+                          const AssociationGates& gates) {
   const cv::Mat_<uchar> covered =
       CoveredCells(found, live.depth.size(), stride);
+  const auto min_cosine = static_cast<float>(std::cos(gates.grazing_angle));
   OpenPoints open;
   for (int v = 0; v < live.depth.rows; v += stride) {
     for (int u = 0; u < live.depth.cols; u += stride) {
@@ -43,8 +44,11 @@ OpenPoints FindOpenPoints(const LiveView& live, std::uint16_t surface,
           !IsCertain(live, surface, v, u)) {
         continue;
       }
-      open.points.push_back(ToEigen(live.map.points(v, u)));
-      open.normals.push_back(ToEigen(live.map.normals(v, u)));
+      const Eigen::Vector3f point = ToEigen(live.map.points(v, u));
+      const Eigen::Vector3f normal = ToEigen(live.map.normals(v, u));
+      if (-normal.dot(point) < min_cosine * point.norm()) continue;
+      open.points.push_back(point);
+      open.normals.push_back(normal);
     }
   }
   return open;

@@ -7,8 +7,8 @@
 
 namespace splitfusion {
 
-/// Certain live points of a surface, at every `stride`-th row and column,
-/// beside none of which a correspondence was found.
+/// Certain live points of a surface, at every `stride`-th row and column and
+/// not seen at grazing angles, beside none of which a correspondence was found.
 struct OpenPoints {
   std::vector<Eigen::Vector3f> points;   ///< Camera frame, metres.
   std::vector<Eigen::Vector3f> normals;  ///< Camera frame.
@@ -16,7 +16,8 @@ struct OpenPoints {
 
 /// Finds them.
 OpenPoints FindOpenPoints(const LiveView& live, std::uint16_t surface,
-                          const std::vector<Correspondence>& found, int stride);
+                          const std::vector<Correspondence>& found, int stride,
+                          const AssociationGates& gates);
 
 /// Pairs every open point with the nearest of `astray` under the warp, model
 /// samples that would be in view but are not where the model has them, if it is

@@ -47,6 +47,7 @@ PointwiseAssociator::PointwiseAssociator(const LiveView& live,
                                          std::uint16_t surface,
                                          std::vector<Outcome> outcomes)
     : live_(live), surface_(surface), outcomes_(std::move(outcomes)) {
+  tells_hidden_ = std::count(outcomes_.begin(), outcomes_.end(), kOccluded) > 0;
   outcomes_.insert(outcomes_.end(), {kDistance, kNormalAngle, kGrazing});
 }
 
@@ -71,8 +72,8 @@ RejectedPoints PointwiseAssociator::Row(Outcome outcome) {
   }
 }
 
-bool PointwiseAssociator::IsAstray(Outcome outcome) {
-  if (outcome == kAccepted) return false;
+bool PointwiseAssociator::IsAstray(Outcome outcome) const {
+  if (outcome == kAccepted || !tells_hidden_) return false;
   const Rejection kind = Row(outcome).kind;
   return kind == Rejection::kAbsent || kind == Rejection::kMisfit;
 }
@@ -148,7 +149,8 @@ Association PointwiseAssociator::Associate(
   association.correspondences = std::move(matches);
   if (association_gates.lost_distance > 0) {
     association.lost = PairLostParts(
-        FindOpenPoints(live_, surface_, association.correspondences, stride),
+        FindOpenPoints(live_, surface_, association.correspondences, stride,
+                       association_gates),
         astray, warp, association_gates);
   }
   RemoveCommonBrightness(&association.correspondences);

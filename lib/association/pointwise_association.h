@@ -38,6 +38,8 @@ class PointwiseAssociator : public Associator {
   };
 
   /// `surface`: whose live pixels count; `outcomes`: the rejections of Find().
+  /// If it does not tell what is hidden, kOccluded, nothing is known to be
+  /// astray, and Association::lost is empty.
   PointwiseAssociator(const LiveView& live, std::uint16_t surface,
                       std::vector<Outcome> outcomes);
 
@@ -56,9 +58,10 @@ class PointwiseAssociator : public Associator {
                 const Gates& gates, Correspondence* out) const;
   static RejectedPoints Row(Outcome outcome);
   /// Whether the sample would be in view and is not where the model has it.
-  static bool IsAstray(Outcome outcome);
+  bool IsAstray(Outcome outcome) const;
 
   std::vector<Outcome> outcomes_;
+  bool tells_hidden_;
 };
 
 }  // namespace splitfusion

@@ -16,7 +16,7 @@ namespace splitfusion {
 void WriteFileAtomically(const std::string& path,
                          const std::function<void(std::ostream&)>& write);
 
-/// The same for writers that want a path (images, grids): `write` receives the
+/// The same for writers that want a path (grids, databases): `write` receives the
 /// temporary path, which keeps the extension of `path`.
 void WritePathAtomically(const std::string& path,
                          const std::function<void(const std::string&)>& write);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <set>
 #include <system_error>
@@ -167,7 +168,7 @@ void WriteOwnershipMarker(const std::string& path,
 }
 
 std::optional<OwnershipMarker> ReadOwnershipMarker(const std::string& path) {
-  if (!fs::exists(path)) return std::nullopt;
+  if (!std::ifstream(path)) return std::nullopt;
   const Json json = ReadJsonOrNull(path);
   OwnershipMarker marker;
   try {

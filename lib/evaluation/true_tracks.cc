@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "splitfusion/lib/base/error.h"
 
@@ -41,10 +42,12 @@ TrueTracks TrueTracks::Read(const std::string& path) {
   const std::size_t expected = sizeof(head[0]) * head.size() +
                                points * sizeof(StoredPoint) +
                                entries * (sizeof(Eigen::Vector3f) + 1);
-  const std::uintmax_t bytes = std::filesystem::file_size(path);
-  if (bytes != expected) {
-    throw InputError(path + ": " + std::to_string(bytes) + " bytes: expected " +
-                     std::to_string(expected));
+  std::error_code none;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, none);
+  if (none || bytes != expected) {
+    throw InputError(path + ": " +
+                     (none ? "no file" : std::to_string(bytes) + " bytes") +
+                     ": expected " + std::to_string(expected));
   }
   TrueTracks tracks;
   tracks.frames_ = static_cast<int>(head[2]);
@@ -56,6 +59,7 @@ TrueTracks TrueTracks::Read(const std::string& path) {
   ReadValues(&stream, &tracks.positions_);
   tracks.visible_.resize(entries);
   ReadValues(&stream, &tracks.visible_);
+  if (!stream) throw InputError(path + ": ends while it is read");
   return tracks;
 }
 

@@ -163,7 +163,8 @@ void MaskFolderWriter::AddImage(const std::string& name,
   const std::string path = (fs::path(folder_) / name).string();
   const std::string bytes = EncodeImage(path, image);
   WriteFileAtomically(path, [&](std::ostream& out) {
-    out << bytes;
+    out << bytes << std::flush;
+    if (!out) return;  // The caller says so.
     AppendLines(kWrittenFile, WrittenLine({name, bytes.size()}));
   });
 }

@@ -102,7 +102,16 @@ std::string EncodeImage(const std::string& path, const cv::Mat& image,
   if (image.empty()) throw InputError(path + ": no image to be written");
   const std::string extension = std::filesystem::path(path).extension();
   std::vector<std::uint8_t> bytes;
-  cv::imencode(extension, image, bytes, parameters);
+  bool encoded = false;
+  try {
+    encoded = cv::imencode(extension, image, bytes, parameters);
+  } catch (const cv::Exception&) {
+    // Too large for the format, or no format of that name.
+  }
+  if (!encoded) {
+    throw InputError(path + ": " + ToString(image.size()) +
+                     " pixels cannot be written as " + extension);
+  }
   return {bytes.begin(), bytes.end()};
 }
 

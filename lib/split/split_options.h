@@ -24,8 +24,8 @@ struct SplitOptions {
                                  ///< a known surface well.
   double max_area = 0.75;        ///< Fraction of the image; larger likewise.
   int min_pixels = 600;          ///< With depth; smaller instances are ignored.
-  int min_island = 60;           ///< Pixels; smaller islands of a surface are
-                                 ///< left to what is around them.
+  int min_island = 60;           ///< Pixels; smaller islands are no part of a
+                                 ///< surface.
   int max_missed_frames = 15;    ///< Kept alive without a detection.
   int birth_frames = 2;          ///< Detections that make a surface, less half
                                  ///< of the frames without one; twice as many

@@ -5,8 +5,8 @@
 
 namespace splitfusion {
 
-/// What is usual of a surface, its step and its size, is that of as many of
-/// its last tracked frames.
+/// What is usual of a surface, its step and its size, is that of about as
+/// many of its last tracked frames.
 constexpr int kUsualFrames = 10;
 
 /// What is known of where a surface is, see docs/surfaces_in_time.md.

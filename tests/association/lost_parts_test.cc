@@ -81,6 +81,7 @@ TEST_F(LostPartsTest, WhatHasAModelPullsNothing) {
   AddSamples(98, 122);
   const Association association = Run();
   EXPECT_GT(association.counts.accepted, 300);
+  ASSERT_FALSE(association.lost.empty());
   for (const Correspondence& pair : association.lost) {
     // Above and below what the samples cover.
     const float row = camera_.Project(pair.target).y();
@@ -106,10 +107,23 @@ TEST_F(LostPartsTest, UncertainPixelsPullNothing) {
   EXPECT_TRUE(Run().lost.empty());
 }
 
-TEST_F(LostPartsTest, TheClosestPointLeavesOverTheSame) {
-  const std::size_t projective = Run().lost.size();
+TEST_F(LostPartsTest, GrazingDepthPullsNothing) {
+  EXPECT_FALSE(Run().lost.empty());
+  constexpr double kAngle = 0.2;
+  gates_.grazing_angle = kAngle;
+  const std::vector<Correspondence> seen = Run().lost;
+  EXPECT_FALSE(seen.empty());
+  for (const Correspondence& pair : seen) {
+    EXPECT_GE(-pair.target_normal.dot(pair.target.normalized()),
+              std::cos(kAngle) - 1e-5);
+  }
+  gates_.grazing_angle = 0.02;
+  EXPECT_TRUE(Run().lost.empty());
+}
+
+TEST_F(LostPartsTest, TheClosestPointDoesNotKnowWhatIsHidden) {
   association_ = "closest_point";
-  EXPECT_EQ(Run().lost.size(), projective);
+  EXPECT_TRUE(Run().lost.empty());
 }
 
 }  // namespace

@@ -215,9 +215,9 @@ TEST(SurfaceTracker, WhatIsHiddenDoesNotSpringBackToRest) {
 }
 
 /// By how much the tip of an arm, 4 cm wide, is off its place in the mean,
-/// metres, after it was swung sideways by 7 cm at the tip within one frame.
+/// metres, after it was swung sideways by 9 cm at the tip within one frame.
 double ErrorOfSwungArm(const std::string& terms, SurfaceReport* report) {
-  constexpr double kSwing = 0.28;  // Radians about the shoulder, x = 0.1.
+  constexpr double kSwing = 0.36;  // Radians about the shoulder, x = 0.1.
   const auto sheet = [](double swing) {
     const auto place = [swing](double x, double y) -> Eigen::Vector3d {
       const double along = std::max(0.0, x - 0.1);
@@ -269,20 +269,24 @@ double ErrorOfSwungArm(const std::string& terms, SurfaceReport* report) {
 TEST(SurfaceTracker, FindsAnArmThatMovedFartherThanItsWidth) {
   SurfaceReport without, with;
   const std::string seen = "live_to_model(weight=1,loss=huber,scale=0.013)";
-  EXPECT_GT(ErrorOfSwungArm("", &without), 0.04);
-  EXPECT_LT(ErrorOfSwungArm(seen, &with), 0.025);
-  const auto lost_pairs = [](const SurfaceReport& report, bool first) {
+  const double beside = ErrorOfSwungArm("", &without);
+  const double found = ErrorOfSwungArm(seen, &with);
+  EXPECT_GT(beside, 0.05);
+  EXPECT_LT(found, 0.5 * beside);
+  // There are pairs in the first non-rigid stage only, fewer where they pull.
+  const auto pairs = [](const SurfaceReport& report) {
+    int sum = 0;
     for (const TrackingRound& round : report.rounds) {
+      sum += round.lost_pairs;
       if (round.stage == "rigid") {
         EXPECT_EQ(round.lost_pairs, 0);
-      } else if (first) {
-        return round.lost_pairs;
       }
     }
-    return report.rounds.back().lost_pairs;
+    EXPECT_EQ(report.rounds.back().lost_pairs, 0);
+    return sum;
   };
-  EXPECT_GT(lost_pairs(with, true), 25);
-  EXPECT_LT(lost_pairs(with, false), lost_pairs(with, true) / 2);
+  EXPECT_GT(pairs(with), 25);
+  EXPECT_GT(pairs(without), 1.5 * pairs(with));
 }
 
 TEST(SurfaceTracker, TellsWhichNodesWereSeen) {
