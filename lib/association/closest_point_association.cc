@@ -13,9 +13,7 @@ class ClosestPointAssociator : public PointwiseAssociator {
     std::vector<Eigen::Vector3f> points;
     for (int v = 0; v < live.depth.rows; ++v) {
       for (int u = 0; u < live.depth.cols; ++u) {
-        if (!(live.depth(v, u) > 0) || live.map.normals(v, u)[2] == 0 ||
-            live.labels(v, u) != surface || live.uncertain(v, u) != 0 ||
-            live.edges(v, u) != 0) {
+        if (!IsCertain(live, surface, v, u) || live.map.normals(v, u)[2] == 0) {
           continue;
         }
         const cv::Vec3f& p = live.map.points(v, u);

@@ -10,12 +10,6 @@ namespace {
 
 Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
-bool IsCertain(const LiveView& live, std::uint16_t surface, int v, int u) {
-  return live.labels(v, u) == surface && live.depth(v, u) > 0 &&
-         live.map.normals(v, u)[2] != 0 && live.edges(v, u) == 0 &&
-         live.uncertain(v, u) == 0;
-}
-
 /// Cells of `stride` pixels in which, or beside which, something was found.
 cv::Mat_<uchar> CoveredCells(const std::vector<Correspondence>& found,
                              const cv::Size& image, int stride) {
@@ -41,7 +35,7 @@ OpenPoints FindOpenPoints(const LiveView& live, std::uint16_t surface,
   for (int v = 0; v < live.depth.rows; v += stride) {
     for (int u = 0; u < live.depth.cols; u += stride) {
       if (covered(v / stride, u / stride) != 0 ||
-          !IsCertain(live, surface, v, u)) {
+          !IsCertain(live, surface, v, u) || live.map.normals(v, u)[2] == 0) {
         continue;
       }
       const Eigen::Vector3f point = ToEigen(live.map.points(v, u));

@@ -59,6 +59,13 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
                       const cv::Mat& color,
                       const PointMapOptions& options = {});
 
+/// Whether a pixel shows a surface for sure: it has depth, is one of the
+/// surface, and neither uncertain nor beside a depth edge.
+inline bool IsCertain(const LiveView& live, int surface, int v, int u) {
+  return live.labels(v, u) == surface && live.depth(v, u) > 0 &&
+         live.edges(v, u) == 0 && live.uncertain(v, u) == 0;
+}
+
 /// Number of pixels with depth of every surface id that has some.
 std::map<int, int> PixelsOfSurfaces(const LiveView& live);
 

@@ -12,11 +12,6 @@
 namespace splitfusion {
 namespace {
 
-bool IsCertain(const LiveView& live, int surface, int v, int u) {
-  return live.labels(v, u) == surface && live.depth(v, u) > 0 &&
-         live.edges(v, u) == 0 && live.uncertain(v, u) == 0;
-}
-
 /// Where the live points of a surface are, roughly: the range of their depth in
 /// every tile of the image. Tells most of a mesh, all that is turned away or
 /// hidden, from what may be at one of them.

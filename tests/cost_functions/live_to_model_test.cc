@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "splitfusion/lib/energy/warp_functor.h"
-#include "support/gradient_check.h"
 #include "support/sample_correspondences.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
@@ -18,29 +16,6 @@ std::vector<Correspondence> PlateMovedBy(const Eigen::Vector3d& way) {
   return PerfectAssociation(
       PlateMesh(0.1, 0.1, 0.02, 1), MakeRigidGraph(Rigid3d::Identity()),
       [&](const Eigen::Vector3d& p) -> Eigen::Vector3d { return p + way; });
-}
-
-TEST(LiveToModel, ValueByHand) {
-  const LiveToModel functor{{0, 0.6, 0.8}, {1, 2, 3}, 2};
-  const Eigen::Vector3d x(7, 1, 2);
-  double residual = 0;
-  functor(x.data(), &residual);
-  EXPECT_NEAR(residual, 2 * (-0.6 - 0.8), 1e-12);
-}
-
-TEST(LiveToModel, GradientsMatchNumeric) {
-  DeformationGraph graph = CoverWithNodes(PlateMesh(0.2, 0.2, 0.01, 1), 0.04);
-  Shake(0.1, /*seed=*/1, &graph);
-  const Eigen::Vector3f point(0.11f, 0.07f, 1.f);
-  const Skinning skinning = SkinningIndex(graph, 6).Skin(point);
-  const LiveToModel functor{Eigen::Vector3d(1, -2, 2) / 3, {0.3, 0.1, 1.1}, 1};
-  const auto cost = AutoDiffOverTwists(
-      WarpFunctor<LiveToModel>{graph, skinning, point, functor}, skinning.count,
-      1);
-  for (const double size : {0.0, 0.01, 1.0}) {
-    EXPECT_GRADIENTS_MATCH(*cost,
-                           RandomTwists(skinning.count, size, /*seed=*/7));
-  }
 }
 
 TEST(LiveToModelTerm, IsTheSquaredDistanceWhereverTheCameraIs) {
