@@ -111,6 +111,22 @@ void BlendNewMotions(const std::vector<Eigen::Vector3f>& added,
   }
 }
 
+/// The nodes that carry a vertex, ascending. What was fused in a wrong place
+/// and refuted since leaves nodes behind that carry nothing; all nodes of a
+/// surface without a mesh stay.
+std::vector<int> CarryingNodes(const std::vector<Skinning>& skinning,
+                               int nodes) {
+  std::vector<char> carries(nodes, skinning.empty());
+  for (const Skinning& s : skinning) {
+    for (int k = 0; k < s.count; ++k) carries[s.nodes[k]] = true;
+  }
+  std::vector<int> carrying;
+  for (int i = 0; i < nodes; ++i) {
+    if (carries[i]) carrying.push_back(i);
+  }
+  return carrying;
+}
+
 /// Vertices for new nodes, as many as there is room for; the spacing is raised
 /// where it would be exceeded.
 struct NewNodes {
@@ -119,11 +135,11 @@ struct NewNodes {
 };
 
 NewNodes FindNewNodes(const TriangleMesh& mesh, const GraphOptions& options,
-                      const std::vector<SkinningSupport>& supports,
-                      const DeformationGraph& graph) {
-  const int room = options.max_nodes - graph.size();
-  NewNodes found{{}, graph.node_spacing};
-  if (graph.size() > 0 && room <= 0) return found;
+                      const std::vector<SkinningSupport>& supports, int nodes,
+                      double spacing) {
+  const int room = options.max_nodes - nodes;
+  NewNodes found{{}, spacing};
+  if (nodes > 0 && room <= 0) return found;
   found.vertices = UncoveredVertices(mesh, supports, found.spacing);
   while (static_cast<int>(found.vertices.size()) > room) {
     constexpr double kWider = 1.1;
@@ -149,16 +165,23 @@ std::vector<NodeSeed> FindSeeds(const std::vector<SkinningSupport>& supports,
   return seeds;
 }
 
-/// Appends nodes at vertices of the mesh and ties all nodes anew.
-void AddNodes(const TriangleMesh& mesh, const GraphOptions& options,
-              const std::vector<SkinningSupport>& supports,
-              const NewNodes& added, DeformationGraph* graph) {
-  const std::vector<NodeSeed> seeds =
+/// Takes nodes in that stand at vertices of the mesh, leaves those out that are
+/// not kept, and ties all nodes anew.
+void ReplaceNodes(const TriangleMesh& mesh, const GraphOptions& options,
+                  const std::vector<SkinningSupport>& supports,
+                  const NewNodes& added, const NodeChange& change,
+                  DeformationGraph* graph) {
+  std::vector<NodeSeed> seeds =
       FindSeeds(supports, graph->size(), added.vertices);
   graph->node_spacing = added.spacing;
   for (const int vertex : added.vertices) {
     graph->positions.push_back(mesh.vertices[vertex].cast<double>());
   }
+  change.Apply(&seeds);
+  change.Apply(&graph->positions);
+  change.Apply(&graph->motions);
+  change.Apply(&graph->first_seen);
+  change.Apply(&graph->seen);
   graph->seen_edges.clear();
   graph->neighbors = ConnectAlongSurface(graph->positions, seeds, mesh,
                                          options.neighbors_per_node);
@@ -191,8 +214,8 @@ void GraphOptions::List(OptionList* list) {
       .common = true;
   list->Number(
       "growth_batch", &growth_batch, Range::Share(), "",
-      "New nodes wait until they are this share of the graph's (fewer, "
-      "larger growths are faster).");
+      "Nodes that come or go wait until they are this share of the graph's "
+      "(fewer, larger changes are faster).");
 }
 
 void GraphOptions::Check() const { CheckOptions(*this); }
@@ -210,27 +233,35 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
   if (graph->size() > 0) {
     const SkinningIndex index(*graph, options.neighbors_per_point);
     const MeshSkinning skinning(index, canonical_mesh.vertices);
-    return GrowGraph(canonical_mesh, options, index, skinning.supports(), graph,
-                     history);
+    return UpdateGraph(canonical_mesh, options, index, skinning, graph, history)
+        .added;
   }
-  const NewNodes added = FindNewNodes(canonical_mesh, options, {}, *graph);
+  const NewNodes added =
+      FindNewNodes(canonical_mesh, options, {}, 0, graph->node_spacing);
   graph->motions.resize(added.vertices.size());
-  AddNodes(canonical_mesh, options, {}, added, graph);
+  NodeChange change;
+  change.added = static_cast<int>(added.vertices.size());
+  ReplaceNodes(canonical_mesh, options, {}, added, change, graph);
   return graph->size();
 }
 
-int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
-              const SkinningIndex& index,
-              const std::vector<SkinningSupport>& supports,
-              DeformationGraph* graph, MotionHistory* history) {
+NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
+                       const GraphOptions& options, const SkinningIndex& index,
+                       const MeshSkinning& skinning, DeformationGraph* graph,
+                       MotionHistory* history) {
+  NodeChange change{graph->size(),
+                    CarryingNodes(skinning.skinning(), graph->size())};
   const NewNodes added =
-      FindNewNodes(canonical_mesh, options, supports, *graph);
-  const auto count = static_cast<double>(added.vertices.size());
+      FindNewNodes(canonical_mesh, options, skinning.supports(),
+                   static_cast<int>(change.kept.size()), graph->node_spacing);
+  change.added = static_cast<int>(added.vertices.size());
   // The last nodes that there is room for do not wait.
   const double batch =
       std::min(options.growth_batch * graph->size(),
                static_cast<double>(options.max_nodes - graph->size()));
-  if (count == 0 || count < batch) return 0;
+  if (change.none() || change.added + change.forgotten() < batch) {
+    return NodeChange::None(graph->size());
+  }
   std::vector<Eigen::Vector3f> places;
   for (const int vertex : added.vertices) {
     places.push_back(canonical_mesh.vertices[vertex]);
@@ -240,10 +271,12 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
   if (history != nullptr) {
     for (FrameMotions& frame : history->frames) {
       BlendNewMotions(places, &carriers, &frame.motions);
+      change.Apply(&frame.motions);
     }
   }
-  AddNodes(canonical_mesh, options, supports, added, graph);
-  return static_cast<int>(added.vertices.size());
+  ReplaceNodes(canonical_mesh, options, skinning.supports(), added, change,
+               graph);
+  return change;
 }
 
 }  // namespace splitfusion

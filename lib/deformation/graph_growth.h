@@ -3,7 +3,9 @@
 
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/node_change.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
@@ -21,9 +23,9 @@ struct GraphOptions {
   double near_depth = 0.7;  ///< Metres; up to here `near_spacing`.
   double far_depth = 1.5;   ///< Metres; from here `far_spacing`.
   int max_nodes = 2000;     ///< Per surface; the spacing grows to keep it.
-  /// New nodes wait until they are so many, as a part of the graph's: every
-  /// growth renews edges and skinning. Meanwhile nodes a little farther away
-  /// carry the points.
+  /// Nodes that come or go wait until they are so many, as a part of the
+  /// graph's: every change renews edges and skinning. Meanwhile nodes a little
+  /// farther away carry the points.
   double growth_batch = 0.005;
 
   /// Names, ranges and meaning of all fields.
@@ -38,21 +40,24 @@ double NodeSpacing(const GraphOptions& options, double depth);
 /// Adds nodes where the canonical mesh is farther than the node spacing from
 /// every node, so that nodes cover the surface evenly (SplitFusion IV-B), and
 /// ties all nodes along the surface. An empty graph is filled from scratch with
-/// identity motions; new nodes of a grown graph get the motion that the old
-/// ones blend to at their place, in the graph and in every frame of `history`
-/// (may be null). When `max_nodes` would be exceeded the spacing is raised and
-/// the graph's new nodes are as many as fit.
+/// identity motions; a graph that has nodes is updated, see UpdateGraph().
 ///
-/// @return number of nodes added; edges are rebuilt only if it is not 0.
+/// @return number of nodes added.
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               DeformationGraph* graph, MotionHistory* history);
 
-/// The same, given the skinning by the graph as it is and what that of every
-/// vertex depends on.
-int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
-              const SkinningIndex& index,
-              const std::vector<SkinningSupport>& supports,
-              DeformationGraph* graph, MotionHistory* history);
+/// Makes a graph follow its surface, given the skinning by the graph as it is.
+/// New nodes cover what they are missing on (as GrowGraph()); they get the
+/// motion that the old ones blend to at their place, in the graph and in every
+/// frame of `history` (may be null). Nodes that carry no vertex any more are
+/// forgotten, in `history` too. When `max_nodes` would be exceeded the spacing
+/// is raised and the new nodes are as many as fit.
+///
+/// @return what became of the nodes; edges are rebuilt only if anything did.
+NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
+                       const GraphOptions& options, const SkinningIndex& index,
+                       const MeshSkinning& skinning, DeformationGraph* graph,
+                       MotionHistory* history);
 
 }  // namespace splitfusion
 

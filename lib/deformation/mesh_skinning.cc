@@ -52,7 +52,10 @@ void MeshSkinning::FollowGraph(const SkinningIndex& index,
                                const std::vector<Eigen::Vector3f>& vertices,
                                const SkinningChange& change) {
   ForEachVertex(vertices.size(), [&](std::size_t i, SkinningSupport* support) {
-    if (change.Keeps(supports_[i])) return;
+    if (change.Keeps(supports_[i])) {
+      change.Renumber(&skinning_[i], &supports_[i]);
+      return;
+    }
     skinning_[i] = index.Skin(vertices[i], support);
     supports_[i] = *support;
   });

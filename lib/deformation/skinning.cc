@@ -190,12 +190,16 @@ std::vector<Skinning> SkinningIndex::Skin(
 }
 
 float SkinningIndex::FirstDifference(const SkinningIndex& before,
-                                     const SkinningIndex& after, int node) {
+                                     const SkinningIndex& after,
+                                     const std::vector<int>& numbers,
+                                     int node) {
+  if (numbers[node] < 0) return 0;
   // Both are in the order of their distances.
   const CandidateList& a = before.candidates_[node];
-  const CandidateList& b = after.candidates_[node];
-  const auto [i, j] = std::mismatch(a.nodes.begin(), a.nodes.end(),
-                                    b.nodes.begin(), b.nodes.end());
+  const CandidateList& b = after.candidates_[numbers[node]];
+  const auto [i, j] = std::mismatch(
+      a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end(),
+      [&](int old, int now) { return numbers[old] == now; });
   float first = std::numeric_limits<float>::infinity();
   if (i != a.nodes.end()) first = a.distance[i - a.nodes.begin()];
   if (j != b.nodes.end()) {

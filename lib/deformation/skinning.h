@@ -65,9 +65,11 @@ class SkinningIndex {
 
   /// How far the nodes are, metres, that may carry the points nearest to `node`
   /// by one of two indices of the same graph but not by the other; infinity if
-  /// there is no difference.
+  /// there is no difference, 0 if the node itself is gone. `numbers`: index
+  /// after of every node before, -1 = gone.
   static float FirstDifference(const SkinningIndex& before,
-                               const SkinningIndex& after, int node);
+                               const SkinningIndex& after,
+                               const std::vector<int>& numbers, int node);
 
  private:
   /// The nodes that may carry the points nearest to one node, by their distance

@@ -173,20 +173,20 @@ void Surface::UpdateMesh() {
   mesh_ = mesh_extractor_.Extract(volume_, options_.min_mesh_weight);
   mesh_skinning_.FollowMesh(*index_, mesh_.vertices,
                             mesh_extractor_.kept_from());
-  if (kind_ == SurfaceKind::kNonRigid) GrowOverMesh();
+  if (kind_ == SurfaceKind::kNonRigid) UpdateGraphOverMesh();
 }
 
-void Surface::GrowOverMesh() {
-  if (GrowGraph(mesh_, graph_options_, *index_, mesh_skinning_.supports(),
-                &graph_, &history_) == 0) {
-    return;
-  }
-  auto grown = std::make_unique<SkinningIndex>(
+void Surface::UpdateGraphOverMesh() {
+  const NodeChange change = UpdateGraph(mesh_, graph_options_, *index_,
+                                        mesh_skinning_, &graph_, &history_);
+  if (change.none()) return;
+  change.Apply(&last_seen_);
+  auto updated = std::make_unique<SkinningIndex>(
       graph_, graph_options_.neighbors_per_point);
-  const SkinningChange change(*index_, *grown, graph_);
-  index_ = std::move(grown);
-  integrator_.FollowGraph(*index_, change, volume_);
-  mesh_skinning_.FollowGraph(*index_, mesh_.vertices, change);
+  const SkinningChange skinning_change(*index_, *updated, graph_, change);
+  index_ = std::move(updated);
+  integrator_.FollowGraph(*index_, skinning_change, volume_);
+  mesh_skinning_.FollowGraph(*index_, mesh_.vertices, skinning_change);
 }
 
 void Surface::RecordMotions(int frame, bool tracked) {

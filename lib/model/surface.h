@@ -65,7 +65,7 @@ class Surface {
   /// Fuses the live pixels of this surface under the current motions.
   void Fuse(const LiveView& live);
 
-  /// Extracts the canonical mesh and grows the graph over new parts of it.
+  /// Extracts the canonical mesh; its graph follows it.
   void UpdateMesh();
 
   /// Extracts the final canonical mesh, without small pieces.
@@ -135,7 +135,7 @@ class Surface {
  private:
   void PlaceGraph(const LiveView& live);
   void FuseWarped(const LiveView& live, DepthObservation* observation);
-  void GrowOverMesh();
+  void UpdateGraphOverMesh();
   /// Notes which nodes the last recorded frame showed: none if it was not
   /// tracked, but new ones in any case.
   void UpdateLastSeen();

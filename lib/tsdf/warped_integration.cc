@@ -47,6 +47,8 @@ struct LeafLattice {
   std::array<SkinnedPoint, kOwnPoints> own;
   /// Points whose owner is not there or not attached.
   std::vector<SkinnedPoint> border;
+  /// Bit LatticeIndex::owner(): its points are not in `border`.
+  unsigned owned = 0xff;
 };
 
 /// A block and those that own its lattice, see LatticeIndex::owner(); -1: not
@@ -74,10 +76,13 @@ SkinnedPoint SkinPoint(const openvdb::Coord& origin, float voxel,
   return point;
 }
 
+/// The middle of a block, which is a point of its own.
+constexpr int kCenter = kLatticePoints / 2;
+
 /// Skins the points that a block owns.
 void SkinOwn(const openvdb::Coord& origin, float voxel, float reach,
              const SkinningIndex& index, LeafLattice* lattice) {
-  const LatticeIndex center(kLatticePoints / 2);
+  const LatticeIndex center(kCenter);
   const float half_diagonal = 0.87f * voxel * kLeafSize;  // Maths.
   float distance = 0;
   SkinningSupport support;
@@ -93,11 +98,16 @@ void SkinOwn(const openvdb::Coord& origin, float voxel, float reach,
   }
 }
 
-/// Skins the points of a block that have no owner.
+/// Skins the points of a block that have no owner, where some have lost theirs.
 void SkinBorder(const openvdb::Coord& origin, float voxel, const Owners& owners,
                 const SkinningIndex& index, LeafLattice* lattice) {
+  unsigned owned = 0;
+  for (int k = 0; k < 8; ++k) owned |= (owners[k] >= 0 ? 1u : 0u) << k;
+  if (!lattice->attached || (lattice->owned & ~owned) == 0) return;
+  lattice->owned = owned;
+  lattice->border.clear();
   SkinningSupport support;
-  for (int i = 0; i < kLatticePoints && lattice->attached; ++i) {
+  for (int i = 0; i < kLatticePoints; ++i) {
     if (owners[LatticeIndex(i).owner()] >= 0) continue;
     lattice->border.push_back(SkinPoint(origin, voxel, index, i, &support));
   }
@@ -110,7 +120,10 @@ void FollowPoints(const openvdb::Coord& origin, float voxel,
                   Points* points) {
   SkinningSupport support;
   for (SkinnedPoint& point : *points) {
-    if (change.Keeps(point.support)) continue;
+    if (change.Keeps(point.support)) {
+      change.Renumber(&point.skinning, &point.support);
+      continue;
+    }
     point = SkinPoint(origin, voxel, index, point.lattice_index, &support);
   }
 }
@@ -241,11 +254,14 @@ void WarpedIntegrator::FollowGraph(const SkinningIndex& index,
   std::deque<LeafLattice>& lattices = cache_->lattices;
   tbb::parallel_for(std::size_t{0}, lattices.size(), [&](std::size_t i) {
     LeafLattice& lattice = lattices[i];
-    if (lattice.attached) {
+    const SkinningSupport& center =
+        lattice.own[LatticeIndex(kCenter).own()].support;
+    if (lattice.attached && change.KeepsNode(center.nearest)) {
       FollowPoints(leaves[i].origin, voxel, index, change, &lattice.own);
       FollowPoints(leaves[i].origin, voxel, index, change, &lattice.border);
     } else {
-      lattice.skinned = false;  // A new node may be near enough.
+      lattice =
+          LeafLattice();  // A new node may be near enough, or none any more.
     }
   });
 }
@@ -272,8 +288,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
             &lattices[i]);
   });
   const std::vector<Owners> owners = FindOwners(grids, lattices);
-  tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t m) {
-    const std::size_t i = missing[m];
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     SkinBorder(leaves[i].origin, voxel, owners[i], index, &lattices[i]);
   });
   std::vector<OwnPoints> own(leaves.size());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "splitfusion/lib/deformation/skinning.h"
 #include "support/expect_input_error.h"
@@ -149,6 +150,92 @@ TEST(GraphGrowth, TheLastNodesThatThereIsRoomForDoNotWait) {
   EXPECT_EQ(GrowGraph(PartOfPlate(0.4), options, &graph, nullptr), 1);
   EXPECT_EQ(graph.size(), options.max_nodes);
   EXPECT_GT(graph.node_spacing, 0.04);
+}
+
+/// A graph over a plate, and what becomes of it when its mesh is another one.
+struct Update {
+  Update(const TriangleMesh& mesh, const GraphOptions& options)
+      : graph(CoverWithNodes(PartOfPlate(0.4), 0.04)) {
+    Shake(0.02, /*seed=*/5, &graph);
+    graph.first_seen.resize(graph.size());
+    std::iota(graph.first_seen.begin(), graph.first_seen.end(), 100);
+    graph.seen.assign(graph.size(), 1);
+    history.frames.push_back({3, true, graph.motions});
+    before = graph;
+    const SkinningIndex index(graph, 6);
+    change = UpdateGraph(mesh, options, index,
+                         MeshSkinning(index, mesh.vertices), &graph, &history);
+  }
+
+  DeformationGraph before, graph;
+  MotionHistory history;
+  NodeChange change;
+};
+
+TEST(GraphUpdate, ForgetsNodesThatCarryNothing) {
+  const Update update(PartOfPlate(0.2), GraphOptions());
+  EXPECT_EQ(update.change.added, 0);
+  ASSERT_GT(update.change.forgotten(), 10);
+  const DeformationGraph& graph = update.graph;
+  ASSERT_EQ(graph.size(), update.before.size() - update.change.forgotten());
+  ASSERT_EQ(graph.neighbors.size(), graph.positions.size());
+  EXPECT_TRUE(graph.seen_edges.empty());
+  double right_end = 0;
+  for (int i = 0; i < graph.size(); ++i) {
+    const int old = update.change.kept[i];
+    EXPECT_EQ(graph.positions[i], update.before.positions[old]);
+    EXPECT_EQ(graph.motions[i].translation,
+              update.before.motions[old].translation);
+    EXPECT_EQ(graph.first_seen[i], 100 + old);
+    EXPECT_EQ(update.history.frames[0].motions[i].translation,
+              update.before.motions[old].translation);
+    for (const int j : graph.neighbors[i]) EXPECT_LT(j, graph.size());
+    right_end = std::max(right_end, graph.positions[i].x());
+  }
+  EXPECT_EQ(graph.seen.size(), graph.positions.size());
+  EXPECT_EQ(update.history.frames[0].motions.size(), graph.motions.size());
+  // Nodes beside the end carry the last vertices, too.
+  EXPECT_LT(right_end, 0.2 + 3 * 0.04);
+}
+
+TEST(GraphUpdate, AddsAndForgetsAtOnce) {
+  TriangleMesh mesh = PartOfPlate(0.4);
+  for (Eigen::Vector3f& v : mesh.vertices) v.x() += 0.2f;
+  const Update update(mesh, GraphOptions());
+  ASSERT_GT(update.change.added, 10);
+  ASSERT_GT(update.change.forgotten(), 10);
+  ASSERT_EQ(update.graph.size(),
+            static_cast<int>(update.change.kept.size()) + update.change.added);
+  EXPECT_EQ(update.graph.first_seen.size(), update.change.kept.size());
+  EXPECT_EQ(update.history.frames[0].motions.size(),
+            update.graph.motions.size());
+  for (const Eigen::Vector3f& v : mesh.vertices) {
+    EXPECT_LT(NearestDistance(update.graph, v.cast<double>()), 0.04 + 1e-6);
+  }
+}
+
+TEST(GraphUpdate, WhatIsForgottenMakesRoom) {
+  GraphOptions options;
+  TriangleMesh mesh = PartOfPlate(0.4);
+  for (Eigen::Vector3f& v : mesh.vertices) v.x() += 0.2f;
+  options.max_nodes = CoverWithNodes(PartOfPlate(0.4), 0.04).size();
+  const Update update(mesh, options);
+  EXPECT_GT(update.change.added, 10);
+  EXPECT_LE(update.graph.size(), options.max_nodes);
+}
+
+TEST(GraphUpdate, ABatchWaitsForNodesThatGo) {
+  GraphOptions options;
+  options.growth_batch = 0.9;
+  const Update update(PartOfPlate(0.2), options);
+  EXPECT_TRUE(update.change.none());
+  EXPECT_EQ(update.graph.positions, update.before.positions);
+}
+
+TEST(GraphUpdate, WithoutAMeshAllNodesStay) {
+  const Update update{TriangleMesh(), GraphOptions()};
+  EXPECT_TRUE(update.change.none());
+  EXPECT_EQ(update.graph.size(), update.before.size());
 }
 
 TEST(GraphGrowth, SpecksWithoutATriangleGetNoNode) {

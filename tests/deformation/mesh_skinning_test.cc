@@ -33,15 +33,39 @@ TEST(MeshSkinning, FollowsAGrowingGraph) {
   DeformationGraph graph = CoverWithNodes(Plate(0.6), 0.04);
   const SkinningIndex before(graph, 6);
   MeshSkinning skinning(before, mesh.vertices);
-  ASSERT_GT(GrowGraph(mesh, GraphOptions(), &graph, nullptr), 0);
+  const NodeChange nodes =
+      UpdateGraph(mesh, GraphOptions(), before, skinning, &graph, nullptr);
+  ASSERT_GT(nodes.added, 0);
   const SkinningIndex after(graph, 6);
-  const SkinningChange change(before, after, graph);
+  const SkinningChange change(before, after, graph, nodes);
   int kept = 0;
   for (const SkinningSupport& support : skinning.supports()) {
     kept += change.Keeps(support);
   }
   EXPECT_GT(kept, 0.3 * mesh.vertices.size());
   EXPECT_LT(kept, 0.7 * mesh.vertices.size());
+  skinning.FollowGraph(after, mesh.vertices, change);
+  ExpectSkinnedBy(after, mesh, skinning);
+}
+
+TEST(MeshSkinning, FollowsAGraphThatForgetsNodesAndGrows) {
+  // The mesh ends where the old one was in the middle, and reaches beyond it.
+  TriangleMesh mesh = Plate(0.6);
+  for (Eigen::Vector3f& v : mesh.vertices) v.x() += 0.3f;
+  DeformationGraph graph = CoverWithNodes(Plate(0.6), 0.04);
+  const SkinningIndex before(graph, 6);
+  MeshSkinning skinning(before, mesh.vertices);
+  const NodeChange nodes =
+      UpdateGraph(mesh, GraphOptions(), before, skinning, &graph, nullptr);
+  ASSERT_GT(nodes.forgotten(), 20);
+  ASSERT_GT(nodes.added, 20);
+  const SkinningIndex after(graph, 6);
+  const SkinningChange change(before, after, graph, nodes);
+  int kept = 0;
+  for (const SkinningSupport& support : skinning.supports()) {
+    kept += change.Keeps(support);
+  }
+  EXPECT_GT(kept, 0.1 * mesh.vertices.size());
   skinning.FollowGraph(after, mesh.vertices, change);
   ExpectSkinnedBy(after, mesh, skinning);
 }
@@ -54,7 +78,8 @@ TEST(MeshSkinning, FollowsEdgesThatComeAndGo) {
   graph.neighbors[7].resize(2);
   graph.neighbors[40] = {0, 1, 2};
   const SkinningIndex after(graph, 6);
-  skinning.FollowGraph(after, mesh.vertices, {before, after, graph});
+  skinning.FollowGraph(after, mesh.vertices,
+                       {before, after, graph, NodeChange::None(graph.size())});
   ExpectSkinnedBy(after, mesh, skinning);
 }
 
@@ -82,7 +107,8 @@ TEST(SkinningChange, OfAFewNodesKeepsNothing) {
   ASSERT_LT(graph.size(), 6);
   const SkinningIndex index(graph, 6);
   const MeshSkinning skinning(index, mesh.vertices);
-  const SkinningChange change(index, index, graph);
+  const SkinningChange change(index, index, graph,
+                              NodeChange::None(graph.size()));
   for (const SkinningSupport& support : skinning.supports()) {
     EXPECT_FALSE(change.Keeps(support));
   }

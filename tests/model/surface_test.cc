@@ -151,6 +151,31 @@ TEST(Surface, PartsAstrayDoNotCopyWhatIsModelledElsewhere) {
   EXPECT_LT(right_end(), before + 0.02);
 }
 
+TEST(Surface, ForgetsTheNodesOfWhatIsRefuted) {
+  // The right half of the box is gone; the wall behind it is seen through it.
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+  box.RecordMotions(4, true);
+  const int nodes = box.graph().size();
+  box.mutable_graph()->seen.assign(nodes, 1);
+  for (int frame = 5; frame < 15; ++frame) {
+    box.Fuse(ViewWithBox(kHalf));
+    box.UpdateMesh();
+    box.RecordMotions(frame, true);
+  }
+  EXPECT_LT(box.graph().size(), 0.8 * nodes);
+  for (const FrameMotions& frame : box.history().frames) {
+    EXPECT_EQ(static_cast<int>(frame.motions.size()), box.graph().size());
+  }
+  EXPECT_EQ(box.graph().seen_edges.size(), box.graph().positions.size());
+  const SkinningIndex index(box.graph(), 6);
+  const MeshSkinning anew(index, box.mesh().vertices);
+  for (std::size_t i = 0; i < box.mesh().vertices.size(); ++i) {
+    EXPECT_EQ(box.mesh_skinning()[i].nodes, anew.skinning()[i].nodes) << i;
+    EXPECT_EQ(box.mesh_skinning()[i].weights, anew.skinning()[i].weights) << i;
+  }
+}
+
 TEST(Surface, VerticesMoveWithTheNodes) {
   for (const SurfaceKind kind : {SurfaceKind::kRigid, SurfaceKind::kNonRigid}) {
     Surface box = MakeBox(kind);

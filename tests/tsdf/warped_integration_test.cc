@@ -140,7 +140,9 @@ TEST_F(WarpedIntegration, SkinningFollowsTheGraph) {
     AllocateAround({graph_.positions.back()}, kReach, volume);
   }
   index_ = SkinningIndex(graph_, 6);
-  integrator_.FollowGraph(index_, SkinningChange(before, index_, graph_),
+  NodeChange nodes = NodeChange::None(old_size);
+  nodes.added = 1;
+  integrator_.FollowGraph(index_, SkinningChange(before, index_, graph_, nodes),
                           volume_);
   fuse(&integrator_, &volume_);
   fuse(&anew, &control);
@@ -148,6 +150,47 @@ TEST_F(WarpedIntegration, SkinningFollowsTheGraph) {
   const TriangleMesh expected = ExtractMesh(control, 0.5);
   ASSERT_GT(mesh.vertices.size(), 1500u);
   EXPECT_EQ(mesh.vertices, expected.vertices);
+}
+
+TEST_F(WarpedIntegration, SkinningFollowsAGraphThatForgetsNodes) {
+  // Blocks of the far end are then beyond the reach of every node.
+  constexpr double kShortReach = 0.03;
+  TsdfVolume control(kOptions);
+  AllocateAround(graph_.positions, kReach, &control);
+  const DepthObservation seen =
+      ObserveAll(Camera(), MeshDepth(Camera(), CenteredPlate()));
+  const auto fuse = [&](WarpedIntegrator* integrator, TsdfVolume* volume) {
+    integrator->Integrate(seen, index_, WarpField(graph_), kShortReach, volume);
+  };
+  WarpedIntegrator first, anew;
+  fuse(&integrator_, &volume_);
+  fuse(&first, &control);
+  const SkinningIndex before = index_;
+  NodeChange nodes{graph_.size(), {}, 0};
+  for (int i = 0; i < graph_.size(); ++i) {
+    if (graph_.positions[i].x() < 0.05) nodes.kept.push_back(i);
+  }
+  ASSERT_GT(nodes.forgotten(), 5);
+  const std::vector<int> numbers = nodes.Numbers();
+  nodes.Apply(&graph_.positions);
+  nodes.Apply(&graph_.motions);
+  nodes.Apply(&graph_.neighbors);
+  for (std::vector<int>& row : graph_.neighbors) {
+    std::vector<int> kept;
+    for (const int j : row) {
+      if (numbers[j] >= 0) kept.push_back(numbers[j]);
+    }
+    row = kept;
+  }
+  Shake(0.01, /*seed=*/3, &graph_);
+  index_ = SkinningIndex(graph_, 6);
+  integrator_.FollowGraph(index_, SkinningChange(before, index_, graph_, nodes),
+                          volume_);
+  fuse(&integrator_, &volume_);
+  fuse(&anew, &control);
+  const TriangleMesh mesh = ExtractMesh(volume_, 0.5);
+  ASSERT_GT(mesh.vertices.size(), 1000u);
+  EXPECT_EQ(mesh.vertices, ExtractMesh(control, 0.5).vertices);
 }
 
 TEST_F(WarpedIntegration, WhatBelongsElsewhereIsNotCopied) {
