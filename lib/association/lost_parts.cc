@@ -8,8 +8,6 @@
 namespace splitfusion {
 namespace {
 
-Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
-
 /// Cells of `stride` pixels in which, or beside which, something was found.
 cv::Mat_<uchar> CoveredCells(const std::vector<Correspondence>& found,
                              const cv::Size& image, int stride) {

@@ -12,8 +12,6 @@
 namespace splitfusion {
 namespace {
 
-Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
-
 /// Takes the median difference of grey values, a change of exposure, out.
 void RemoveCommonBrightness(std::vector<Correspondence>* correspondences) {
   if (correspondences->empty()) return;

@@ -3,13 +3,14 @@
 
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
-#include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/deformation/node_change.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
 namespace splitfusion {
+
+class MeshSkinning;
 
 /// How nodes are placed on a surface and tied together.
 struct GraphOptions {

@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_GEOMETRY_POINT_MAP_H_
 #define SPLITFUSION_LIB_GEOMETRY_POINT_MAP_H_
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/base/option_list.h"
@@ -14,6 +15,11 @@ struct PointMap {
   cv::Mat_<cv::Vec3f> points;   ///< HxW; (0,0,0) where there is no depth.
   cv::Mat_<cv::Vec3f> normals;  ///< HxW; towards the camera; 0 = unknown.
 };
+
+/// A point or a normal of such a map.
+inline Eigen::Vector3f ToEigen(const cv::Vec3f& v) {
+  return {v[0], v[1], v[2]};
+}
 
 /// How points and normals are computed from depth.
 struct PointMapOptions {

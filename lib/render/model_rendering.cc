@@ -48,8 +48,6 @@ void ForEachPixel(const MeshRendering& rendering, const Surface& surface,
   }
 }
 
-Eigen::Vector3f ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
-
 /// Grey values of a rendered model, unsmoothed and smoothed like the coarse
 /// level of the live image; pixels outside of the model do not count.
 struct ModelGrey {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "support/expect_input_error.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
