@@ -2,7 +2,6 @@
 
 #include "splitfusion/cost_functions/arap.h"
 #include "splitfusion/cost_functions/color_constancy.h"
-#include "splitfusion/cost_functions/last_seen_arap.h"
 #include "splitfusion/cost_functions/live_to_model.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
 #include "splitfusion/cost_functions/temporal_arap.h"
@@ -20,8 +19,6 @@ TermRegistry BuiltinTerms() {
                     [] { return std::make_unique<LiveToModelTerm>(); });
   registry.Register("temporal_arap",
                     [] { return std::make_unique<TemporalArapTerm>(); });
-  registry.Register("last_seen_arap",
-                    [] { return std::make_unique<LastSeenArapTerm>(); });
   return registry;
 }
 

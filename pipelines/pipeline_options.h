@@ -35,7 +35,7 @@ struct PipelineOptions {
       "point_to_plane(weight=1,loss=tukey,scale=0.03) "
       "color(weight=8,loss=huber,scale=0.01) "
       "live_to_model(weight=1,loss=huber,scale=0.013) arap(weight=8) "
-      "temporal_arap(weight=8) last_seen_arap(weight=8)";
+      "temporal_arap(weight=8)";
   int render_stride = 2;       ///< Model maps hold every n-th pixel.
   bool split_scene = true;     ///< False: one surface holds the whole scene.
   bool model_objects = true;   ///< False: moving things are only cut out.

@@ -6,7 +6,6 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
-#include "splitfusion/lib/visibility/seen_nodes.h"
 
 namespace splitfusion {
 namespace {
@@ -325,9 +324,6 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
       samples, WarpField(*graph), stage.stride, stage.gates);
   round.association = association.counts;
   round.lost_pairs = static_cast<int>(association.lost.size());
-  if (!graph->rigid()) {
-    graph->seen = SeenShares(association.correspondences, graph->size());
-  }
   report->associate_seconds += stopwatch.Restart();
   bool settled = true;
   if (!association.correspondences.empty()) {

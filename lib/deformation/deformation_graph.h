@@ -55,14 +55,6 @@ struct DeformationGraph {
   /// Models of a surface that was re-anchored, ascending; they have no nodes or
   /// frames in common. Empty: one model.
   std::vector<ModelStart> models;
-  /// How far the last association told where each node is, 0 to 1, see
-  /// SeenShares(); nodes beyond its end are newer.
-  std::vector<double> seen;
-  /// For every edge of `neighbors`, the way from j to i in the frame of node i,
-  /// R_i^T (g_i + t_i - g_j - t_j), as it was last seen, metres; what is out of
-  /// view keeps something of it. See KeepSeenEdges(). Empty: not known, as
-  /// after a change of the edges.
-  std::vector<std::vector<Eigen::Vector3d>> seen_edges;
 
   /// Number of nodes.
   int size() const { return static_cast<int>(positions.size()); }
@@ -76,8 +68,7 @@ struct DeformationGraph {
   /// joined models have.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(positions, motions, neighbors, node_spacing, first_seen, seen,
-               seen_edges);
+    (*archive)(positions, motions, neighbors, node_spacing, first_seen);
   }
 };
 

@@ -181,8 +181,6 @@ void ReplaceNodes(const TriangleMesh& mesh, const GraphOptions& options,
   change.Apply(&graph->positions);
   change.Apply(&graph->motions);
   change.Apply(&graph->first_seen);
-  change.Apply(&graph->seen);
-  graph->seen_edges.clear();
   graph->neighbors = ConnectAlongSurface(graph->positions, seeds, mesh,
                                          options.neighbors_per_node);
 }

@@ -11,8 +11,6 @@
 #include "splitfusion/lib/geometry/mesh_pieces.h"
 #include "splitfusion/lib/model/canonical_places.h"
 #include "splitfusion/lib/model/observe_surface.h"
-#include "splitfusion/lib/visibility/seen_edges.h"
-#include "splitfusion/lib/visibility/seen_nodes.h"
 
 namespace splitfusion {
 namespace {
@@ -180,7 +178,6 @@ void Surface::UpdateGraphOverMesh() {
   const NodeChange change = UpdateGraph(mesh_, graph_options_, *index_,
                                         mesh_skinning_, &graph_, &history_);
   if (change.none()) return;
-  change.Apply(&last_seen_);
   auto updated = std::make_unique<SkinningIndex>(
       graph_, graph_options_.neighbors_per_point);
   const SkinningChange skinning_change(*index_, *updated, graph_, change);
@@ -192,18 +189,6 @@ void Surface::UpdateGraphOverMesh() {
 void Surface::RecordMotions(int frame, bool tracked) {
   history_.frames.push_back({frame, tracked, graph_.motions});
   graph_.first_seen.resize(graph_.size(), frame);
-  if (kind_ == SurfaceKind::kRigid) return;
-  UpdateLastSeen();
-  KeepSeenEdges(history_, last_seen_, &graph_);
-}
-
-void Surface::UpdateLastSeen() {
-  const int now = static_cast<int>(history_.frames.size()) - 1;
-  last_seen_.resize(graph_.size(), now);
-  if (!history_.frames.back().tracked) return;
-  for (std::size_t i = 0; i < graph_.seen.size(); ++i) {
-    if (graph_.seen[i] >= 1) last_seen_[i] = now;
-  }
 }
 
 std::vector<Eigen::Vector3f> Surface::WarpedVertices() const {

@@ -136,9 +136,6 @@ class Surface {
   void PlaceGraph(const LiveView& live);
   void FuseWarped(const LiveView& live, DepthObservation* observation);
   void UpdateGraphOverMesh();
-  /// Notes which nodes the last recorded frame showed: none if it was not
-  /// tracked, but new ones in any case.
-  void UpdateLastSeen();
   /// Makes what Serialize() leaves out.
   void RestoreCaches();
 
@@ -159,7 +156,6 @@ class Surface {
   MeshSkinning mesh_skinning_;
   MotionHistory history_;
   std::vector<SurfaceModel> retired_;  // What it was before Reanchor().
-  std::vector<int> last_seen_;         // Place in history_.frames, by node.
 };
 
 }  // namespace splitfusion

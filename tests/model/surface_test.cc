@@ -157,7 +157,6 @@ TEST(Surface, ForgetsTheNodesOfWhatIsRefuted) {
   ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
   box.RecordMotions(4, true);
   const int nodes = box.graph().size();
-  box.mutable_graph()->seen.assign(nodes, 1);
   for (int frame = 5; frame < 15; ++frame) {
     box.Fuse(ViewWithBox(kHalf));
     box.UpdateMesh();
@@ -167,7 +166,6 @@ TEST(Surface, ForgetsTheNodesOfWhatIsRefuted) {
   for (const FrameMotions& frame : box.history().frames) {
     EXPECT_EQ(static_cast<int>(frame.motions.size()), box.graph().size());
   }
-  EXPECT_EQ(box.graph().seen_edges.size(), box.graph().positions.size());
   const SkinningIndex index(box.graph(), 6);
   const MeshSkinning anew(index, box.mesh().vertices);
   for (std::size_t i = 0; i < box.mesh().vertices.size(); ++i) {
@@ -262,49 +260,6 @@ TEST(Surface, NewNodesAreSeenFromTheirFrameOn) {
   EXPECT_EQ(std::count(first_seen.begin(), first_seen.end(), 4), nodes);
   EXPECT_EQ(std::count(first_seen.begin(), first_seen.end(), 7),
             box.graph().size() - nodes);
-}
-
-TEST(Surface, RemembersHowHiddenEdgesWereLastSeen) {
-  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
-  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
-  const auto record = [&](int frame, double seen, bool tracked) {
-    DeformationGraph* graph = box.mutable_graph();
-    graph->motions.assign(graph->size(), NodeMotion());
-    Shake(0.005, /*seed=*/frame, graph);
-    graph->seen.assign(graph->size(), seen);
-    box.RecordMotions(frame, tracked);
-    return graph->seen_edges;
-  };
-  const auto seen = record(5, 1, true);
-  ASSERT_EQ(seen.size(), box.graph().neighbors.size());
-  EXPECT_EQ(record(6, 0.5, true), seen) << "half hidden";
-  EXPECT_EQ(record(7, 1, /*tracked=*/false), seen);
-  const auto again = record(8, 1, true);
-  for (int i = 0; i < box.graph().size(); ++i) {
-    for (std::size_t k = 0; k < seen[i].size(); ++k) {
-      EXPECT_GT((again[i][k] - seen[i][k]).norm(), 1e-5);
-    }
-  }
-}
-
-TEST(Surface, KnowsSeenEdgesOfNewNodes) {
-  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions());
-  ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
-  box.RecordMotions(4, true);
-  const int nodes = box.graph().size();
-  box.mutable_graph()->seen.assign(nodes, 0);
-  for (int i = 0; i < 6; ++i) {
-    box.Fuse(ViewWithBox(kWhole));
-    box.UpdateMesh();
-  }
-  ASSERT_GT(box.graph().size(), 1.5 * nodes);
-  EXPECT_TRUE(box.graph().seen_edges.empty()) << "of other edges";
-  box.RecordMotions(5, true);
-  ASSERT_EQ(box.graph().seen_edges.size(), box.graph().neighbors.size());
-  for (int i = 0; i < box.graph().size(); ++i) {
-    EXPECT_EQ(box.graph().seen_edges[i].size(),
-              box.graph().neighbors[i].size());
-  }
 }
 
 /// Background and box as a scene.

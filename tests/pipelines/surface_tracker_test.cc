@@ -8,7 +8,6 @@
 
 #include "pipelines/tracking_scenes.h"
 #include "splitfusion/cost_functions/arap.h"
-#include "splitfusion/lib/visibility/seen_edges.h"
 #include "support/expect_input_error.h"
 
 namespace splitfusion {
@@ -172,48 +171,6 @@ TEST(SurfaceTracker, BendsANonRigidSurfaceOntoTheDepth) {
   EXPECT_LT(factor, 2);
 }
 
-/// By how much the right half of a sheet, bent onto the depth, is another shape
-/// after frames that show the left half only: mean distance after the best
-/// rigid alignment.
-double ChangeOfHiddenHalf(bool knows_what_was_seen) {
-  BendingSheet sheet;
-  const SurfaceTracker held =
-      MakeTracker(TrackerOptions(), "last_seen_arap(weight=8)");
-  SurfaceReport report;
-  MakeTracker().Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(),
-                      &sheet.graph, &report);
-  const DeformationGraph bent = sheet.graph;
-  if (knows_what_was_seen) {
-    KeepSeenEdges({{{0, true, bent.motions}}}, std::vector<int>(bent.size(), 0),
-                  &sheet.graph);
-  }
-  std::vector<ModelSample> left, right;
-  for (const ModelSample& s : sheet.samples) {
-    (s.u < sheet.live.depth.cols / 2 ? left : right).push_back(s);
-  }
-  for (int frame = 0; frame < 3; ++frame) {
-    EXPECT_TRUE(held.Track(left, sheet.live, 0, Rigid3d::Identity(),
-                           &sheet.graph, &report))
-        << report.reason;
-  }
-  const WarpField now(sheet.graph), before(bent);
-  Eigen::Matrix3Xd from(3, right.size()), to(3, right.size());
-  for (std::size_t i = 0; i < right.size(); ++i) {
-    from.col(i) =
-        before.WarpPoint(right[i].skinning, right[i].point).cast<double>();
-    to.col(i) = now.WarpPoint(right[i].skinning, right[i].point).cast<double>();
-  }
-  const Rigid3d align(Eigen::umeyama(from, to, false));
-  return (align * from - to).colwise().norm().mean();
-}
-
-TEST(SurfaceTracker, WhatIsHiddenDoesNotSpringBackToRest) {
-  const double springs = ChangeOfHiddenHalf(false);
-  const double held = ChangeOfHiddenHalf(true);
-  EXPECT_GT(springs, 0.001);
-  EXPECT_LT(held, 0.7 * springs);
-}
-
 /// By how much the tip of an arm, 4 cm wide, is off its place in the mean,
 /// metres, after it was swung sideways by 9 cm at the tip within one frame.
 double ErrorOfSwungArm(const std::string& terms, SurfaceReport* report) {
@@ -287,28 +244,6 @@ TEST(SurfaceTracker, FindsAnArmThatMovedFartherThanItsWidth) {
   };
   EXPECT_GT(pairs(with), 25);
   EXPECT_GT(pairs(without), 1.5 * pairs(with));
-}
-
-TEST(SurfaceTracker, TellsWhichNodesWereSeen) {
-  BendingSheet sheet;
-  sheet.live.labels.colRange(sheet.live.labels.cols / 2, sheet.live.labels.cols)
-      .setTo(9);
-  TrackerOptions options;
-  options.min_fit = 0;
-  SurfaceReport report;
-  ASSERT_TRUE(MakeTracker(options).Track(
-      sheet.samples, sheet.live, 0, Rigid3d::Identity(), &sheet.graph, &report))
-      << report.reason;
-  ASSERT_EQ(static_cast<int>(sheet.graph.seen.size()), sheet.graph.size());
-  for (int i = 0; i < sheet.graph.size(); ++i) {
-    const double x = sheet.graph.positions[i].x();
-    if (x < -0.08 && x > -0.2) {
-      EXPECT_EQ(sheet.graph.seen[i], 1) << x;
-    }
-    if (x > 0.08) {
-      EXPECT_EQ(sheet.graph.seen[i], 0) << x;
-    }
-  }
 }
 
 TEST(TrackerOptions, RefuseValuesOutOfRange) {
