@@ -111,20 +111,23 @@ void BlendNewMotions(const std::vector<Eigen::Vector3f>& added,
   }
 }
 
-/// The nodes that carry a vertex, ascending. What was fused in a wrong place
-/// and refuted since leaves nodes behind that carry nothing; all nodes of a
-/// surface without a mesh stay.
-std::vector<int> CarryingNodes(const std::vector<Skinning>& skinning,
-                               int nodes) {
-  std::vector<char> carries(nodes, skinning.empty());
+/// The nodes but those that carried a vertex once and carry none now,
+/// ascending: what was fused in a wrong place and refuted since leaves nodes
+/// behind. Notes which nodes have carried one: those of what was seen too
+/// seldom to be meshed have not yet.
+std::vector<int> NodesToKeep(const std::vector<Skinning>& skinning, int nodes,
+                             std::vector<char>* carried) {
+  std::vector<char> carries(nodes, false);
   for (const Skinning& s : skinning) {
     for (int k = 0; k < s.count; ++k) carries[s.nodes[k]] = true;
   }
-  std::vector<int> carrying;
+  carried->resize(nodes, false);
+  std::vector<int> kept;
   for (int i = 0; i < nodes; ++i) {
-    if (carries[i]) carrying.push_back(i);
+    if (carries[i] || !(*carried)[i]) kept.push_back(i);
+    (*carried)[i] |= carries[i];
   }
-  return carrying;
+  return kept;
 }
 
 /// Vertices for new nodes, as many as there is room for; the spacing is raised
@@ -173,7 +176,7 @@ void ReplaceNodes(const TriangleMesh& mesh, const GraphOptions& options,
                   DeformationGraph* graph) {
   std::vector<NodeSeed> seeds =
       FindSeeds(supports, graph->size(), added.vertices);
-  graph->node_spacing = added.spacing;
+  graph->node_spacing = std::max(graph->node_spacing, added.spacing);
   for (const int vertex : added.vertices) {
     graph->positions.push_back(mesh.vertices[vertex].cast<double>());
   }
@@ -231,7 +234,9 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
   if (graph->size() > 0) {
     const SkinningIndex index(*graph, options.neighbors_per_point);
     const MeshSkinning skinning(index, canonical_mesh.vertices);
-    return UpdateGraph(canonical_mesh, options, index, skinning, graph, history)
+    GraphRecord record{graph->node_spacing, {}};
+    return UpdateGraph(canonical_mesh, options, index, skinning, graph, &record,
+                       history)
         .added;
   }
   const NewNodes added =
@@ -246,20 +251,22 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
 NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
                        const GraphOptions& options, const SkinningIndex& index,
                        const MeshSkinning& skinning, DeformationGraph* graph,
-                       MotionHistory* history) {
-  NodeChange change{graph->size(),
-                    CarryingNodes(skinning.skinning(), graph->size())};
-  const NewNodes added =
-      FindNewNodes(canonical_mesh, options, skinning.supports(),
-                   static_cast<int>(change.kept.size()), graph->node_spacing);
-  change.added = static_cast<int>(added.vertices.size());
+                       GraphRecord* record, MotionHistory* history) {
+  const NodeChange none = NodeChange::None(graph->size());
+  if (skinning.skinning().empty()) return none;
+  NodeChange change{
+      graph->size(),
+      NodesToKeep(skinning.skinning(), graph->size(), &record->carried)};
+  double batch = options.growth_batch * graph->size();
+  const int room = options.max_nodes - graph->size();
+  if (room <= 0 && (change.none() || change.forgotten() < batch)) return none;
   // The last nodes that there is room for do not wait.
-  const double batch =
-      std::min(options.growth_batch * graph->size(),
-               static_cast<double>(options.max_nodes - graph->size()));
-  if (change.none() || change.added + change.forgotten() < batch) {
-    return NodeChange::None(graph->size());
-  }
+  if (change.forgotten() == 0) batch = std::min<double>(batch, room);
+  const NewNodes added = FindNewNodes(
+      canonical_mesh, options, skinning.supports(),
+      static_cast<int>(change.kept.size()), record->planned_spacing);
+  change.added = static_cast<int>(added.vertices.size());
+  if (change.none() || change.added + change.forgotten() < batch) return none;
   std::vector<Eigen::Vector3f> places;
   for (const int vertex : added.vertices) {
     places.push_back(canonical_mesh.vertices[vertex]);
@@ -274,6 +281,7 @@ NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
   }
   ReplaceNodes(canonical_mesh, options, skinning.supports(), added, change,
                graph);
+  change.Apply(&record->carried);
   return change;
 }
 

@@ -1,6 +1,8 @@
 #ifndef SPLITFUSION_LIB_DEFORMATION_GRAPH_GROWTH_H_
 #define SPLITFUSION_LIB_DEFORMATION_GRAPH_GROWTH_H_
 
+#include <vector>
+
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_history.h"
@@ -41,24 +43,41 @@ double NodeSpacing(const GraphOptions& options, double depth);
 /// Adds nodes where the canonical mesh is farther than the node spacing from
 /// every node, so that nodes cover the surface evenly (SplitFusion IV-B), and
 /// ties all nodes along the surface. An empty graph is filled from scratch with
-/// identity motions; a graph that has nodes is updated, see UpdateGraph().
+/// identity motions; see UpdateGraph() for one that has nodes: none is
+/// forgotten.
 ///
 /// @return number of nodes added.
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
               DeformationGraph* graph, MotionHistory* history);
 
+/// What a graph that follows its surface remembers beside its nodes.
+struct GraphRecord {
+  /// Node spacing of the surface, metres; that of the graph is wider where it
+  /// was raised, see UpdateGraph().
+  double planned_spacing = 0;
+  /// Of every node whether it has carried a vertex; none beyond its end has.
+  std::vector<char> carried;
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(planned_spacing, carried);
+  }
+};
+
 /// Makes a graph follow its surface, given the skinning by the graph as it is.
 /// New nodes cover what they are missing on (as GrowGraph()); they get the
 /// motion that the old ones blend to at their place, in the graph and in every
-/// frame of `history` (may be null). Nodes that carry no vertex any more are
-/// forgotten, in `history` too. When `max_nodes` would be exceeded the spacing
-/// is raised and the new nodes are as many as fit.
+/// frame of `history` (may be null). Nodes that have carried vertices and carry
+/// none any more are forgotten, in `history` too. When `max_nodes` would be
+/// exceeded the spacing is raised, from the planned one, and the new nodes are
+/// as many as fit; the graph keeps the widest.
 ///
 /// @return what became of the nodes; edges are rebuilt only if anything did.
 NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
                        const GraphOptions& options, const SkinningIndex& index,
                        const MeshSkinning& skinning, DeformationGraph* graph,
-                       MotionHistory* history);
+                       GraphRecord* record, MotionHistory* history);
 
 }  // namespace splitfusion
 

@@ -129,8 +129,8 @@ void Surface::PlaceGraph(const LiveView& live) {
   if (kind_ == SurfaceKind::kRigid) {
     graph_ = MakeRigidGraph(Rigid3d::Identity());
   } else {
-    planned_node_spacing_ = NodeSpacing(graph_options_, MedianDepth(live, id_));
-    graph_.node_spacing = planned_node_spacing_;
+    graph_.node_spacing = NodeSpacing(graph_options_, MedianDepth(live, id_));
+    graph_record_.planned_spacing = graph_.node_spacing;
     GrowGraph(mesh_, graph_options_, &graph_, nullptr);
   }
   index_ = std::make_unique<SkinningIndex>(graph_,
@@ -175,8 +175,9 @@ void Surface::UpdateMesh() {
 }
 
 void Surface::UpdateGraphOverMesh() {
-  const NodeChange change = UpdateGraph(mesh_, graph_options_, *index_,
-                                        mesh_skinning_, &graph_, &history_);
+  const NodeChange change =
+      UpdateGraph(mesh_, graph_options_, *index_, mesh_skinning_, &graph_,
+                  &graph_record_, &history_);
   if (change.none()) return;
   auto updated = std::make_unique<SkinningIndex>(
       graph_, graph_options_.neighbors_per_point);

@@ -107,7 +107,7 @@ class Surface {
   const DeformationGraph& graph() const { return graph_; }
   /// Node spacing that the options ask for, metres; 0 for a rigid surface. The
   /// graph's own is wider where GraphOptions::max_nodes would be exceeded.
-  double planned_node_spacing() const { return planned_node_spacing_; }
+  double planned_node_spacing() const { return graph_record_.planned_spacing; }
   /// The graph, for prediction and tracking.
   DeformationGraph* mutable_graph() { return &graph_; }
   /// Skinning by the current graph.
@@ -149,7 +149,7 @@ class Surface {
   TsdfVolume volume_;
   WarpedIntegrator integrator_;
   DeformationGraph graph_;
-  double planned_node_spacing_ = 0;
+  GraphRecord graph_record_;
   std::unique_ptr<SkinningIndex> index_;
   MeshExtractor mesh_extractor_;
   TriangleMesh mesh_;

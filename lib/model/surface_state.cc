@@ -9,7 +9,7 @@ template <typename Archive>
 void Surface::Serialize(Archive* archive) {
   archive->Section("surface");
   ExpectSame(archive, "id", id_);
-  (*archive)(label_, inactive_, volume_, graph_, planned_node_spacing_, mesh_,
+  (*archive)(label_, inactive_, volume_, graph_, graph_record_, mesh_,
              history_, retired_);
   if constexpr (Archive::kReads) {
     if (graph_.size() == 0) archive->Fail("a graph without nodes");

@@ -162,8 +162,10 @@ struct Update {
     history.frames.push_back({3, true, graph.motions});
     before = graph;
     const SkinningIndex index(graph, 6);
-    change = UpdateGraph(mesh, options, index,
-                         MeshSkinning(index, mesh.vertices), &graph, &history);
+    GraphRecord record{0.04, std::vector<char>(graph.size(), true)};
+    change =
+        UpdateGraph(mesh, options, index, MeshSkinning(index, mesh.vertices),
+                    &graph, &record, &history);
   }
 
   DeformationGraph before, graph;
@@ -193,6 +195,41 @@ TEST(GraphUpdate, ForgetsNodesThatCarryNothing) {
   EXPECT_EQ(update.history.frames[0].motions.size(), graph.motions.size());
   // Nodes beside the end carry the last vertices, too.
   EXPECT_LT(right_end, 0.2 + 3 * 0.04);
+}
+
+TEST(GraphUpdate, NodesThatHaveNotCarriedAVertexYetStay) {
+  const TriangleMesh mesh = PartOfPlate(0.2);
+  DeformationGraph graph = CoverWithNodes(PartOfPlate(0.4), 0.04);
+  const DeformationGraph before = graph;
+  GraphRecord record{0.04, {}};
+  const auto update = [&](const TriangleMesh& now) {
+    const SkinningIndex index(graph, 6);
+    return UpdateGraph(now, GraphOptions(), index,
+                       MeshSkinning(index, now.vertices), &graph, &record,
+                       nullptr);
+  };
+  EXPECT_TRUE(update(mesh).none());
+  EXPECT_EQ(graph.positions, before.positions);
+  EXPECT_TRUE(update(PartOfPlate(0.4)).none());
+  EXPECT_GT(update(mesh).forgotten(), 10);
+  EXPECT_EQ(static_cast<int>(record.carried.size()), graph.size());
+}
+
+TEST(GraphUpdate, WhatMovesOnUnderTheLimitKeepsItsSpacing) {
+  GraphOptions options;
+  TriangleMesh mesh = PartOfPlate(0.4);
+  DeformationGraph graph = CoverWithNodes(mesh, 0.04);
+  const int start = graph.size();
+  options.max_nodes = start;
+  GraphRecord record{0.04, std::vector<char>(start, true)};
+  for (int step = 0; step < 30; ++step) {
+    for (Eigen::Vector3f& v : mesh.vertices) v.x() += 0.02f;
+    const SkinningIndex index(graph, 6);
+    UpdateGraph(mesh, options, index, MeshSkinning(index, mesh.vertices),
+                &graph, &record, nullptr);
+    ASSERT_LE(graph.size(), options.max_nodes);
+  }
+  EXPECT_GT(graph.size(), 0.9 * start);
 }
 
 TEST(GraphUpdate, AddsAndForgetsAtOnce) {

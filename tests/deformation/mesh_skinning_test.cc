@@ -33,8 +33,9 @@ TEST(MeshSkinning, FollowsAGrowingGraph) {
   DeformationGraph graph = CoverWithNodes(Plate(0.6), 0.04);
   const SkinningIndex before(graph, 6);
   MeshSkinning skinning(before, mesh.vertices);
-  const NodeChange nodes =
-      UpdateGraph(mesh, GraphOptions(), before, skinning, &graph, nullptr);
+  GraphRecord record{0.04, std::vector<char>(graph.size(), true)};
+  const NodeChange nodes = UpdateGraph(mesh, GraphOptions(), before, skinning,
+                                       &graph, &record, nullptr);
   ASSERT_GT(nodes.added, 0);
   const SkinningIndex after(graph, 6);
   const SkinningChange change(before, after, graph, nodes);
@@ -55,8 +56,9 @@ TEST(MeshSkinning, FollowsAGraphThatForgetsNodesAndGrows) {
   DeformationGraph graph = CoverWithNodes(Plate(0.6), 0.04);
   const SkinningIndex before(graph, 6);
   MeshSkinning skinning(before, mesh.vertices);
-  const NodeChange nodes =
-      UpdateGraph(mesh, GraphOptions(), before, skinning, &graph, nullptr);
+  GraphRecord record{0.04, std::vector<char>(graph.size(), true)};
+  const NodeChange nodes = UpdateGraph(mesh, GraphOptions(), before, skinning,
+                                       &graph, &record, nullptr);
   ASSERT_GT(nodes.forgotten(), 20);
   ASSERT_GT(nodes.added, 20);
   const SkinningIndex after(graph, 6);
