@@ -39,7 +39,7 @@ struct SkinningSupport {
 /// point on an arm is not carried by the torso that it touches: edges follow
 /// the surface.
 ///
-/// A snapshot of the positions and edges of a graph; rebuild after growth.
+/// A snapshot of the positions and edges of a graph; rebuild after a change.
 class SkinningIndex {
  public:
   /// `neighbors_per_point` is K, 1..kMaxSkinningNodes; the graph has a node.

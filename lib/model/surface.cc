@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"

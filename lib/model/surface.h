@@ -72,7 +72,7 @@ class Surface {
   void FinishMesh();
 
   /// Appends the current motions to the history. Nodes that are new are seen
-  /// from this frame on; the graph is told how its edges were last seen.
+  /// from this frame on.
   void RecordMotions(int frame, bool tracked);
 
   /// Mesh vertices under the current motions, camera frame.

@@ -15,8 +15,8 @@ namespace splitfusion {
 /// wherever they are by now; all triangles where that is not recorded.
 ///
 /// A node is near as far as the node spacing: so far the graph did not grow. At
-/// GraphOptions::max_nodes it does not grow at all, and what is new is near an
-/// old node, however far away.
+/// GraphOptions::max_nodes it does not grow until nodes are forgotten, and what
+/// is new is near an old node, however far away.
 ///
 /// Motions carry every vertex to every frame, but those of a node before it
 /// was made are only blended from the nodes around it: an arm that came into
