@@ -28,6 +28,15 @@ void ExpectSkinnedBy(const SkinningIndex& index, const TriangleMesh& mesh,
   }
 }
 
+/// Vertices whose skinning a change of the graph keeps.
+int CountKept(const SkinningChange& change, const MeshSkinning& skinning) {
+  int kept = 0;
+  for (const SkinningSupport& support : skinning.supports()) {
+    kept += change.Keeps(support);
+  }
+  return kept;
+}
+
 TEST(MeshSkinning, FollowsAGrowingGraph) {
   const TriangleMesh mesh = Plate(0.9);
   DeformationGraph graph = CoverWithNodes(Plate(0.6), 0.04);
@@ -39,10 +48,7 @@ TEST(MeshSkinning, FollowsAGrowingGraph) {
   ASSERT_GT(nodes.added, 0);
   const SkinningIndex after(graph, 6);
   const SkinningChange change(before, after, graph, nodes);
-  int kept = 0;
-  for (const SkinningSupport& support : skinning.supports()) {
-    kept += change.Keeps(support);
-  }
+  const int kept = CountKept(change, skinning);
   EXPECT_GT(kept, 0.3 * mesh.vertices.size());
   EXPECT_LT(kept, 0.7 * mesh.vertices.size());
   skinning.FollowGraph(after, mesh.vertices, change);
@@ -63,10 +69,7 @@ TEST(MeshSkinning, FollowsAGraphThatForgetsNodesAndGrows) {
   ASSERT_GT(nodes.added, 20);
   const SkinningIndex after(graph, 6);
   const SkinningChange change(before, after, graph, nodes);
-  int kept = 0;
-  for (const SkinningSupport& support : skinning.supports()) {
-    kept += change.Keeps(support);
-  }
+  const int kept = CountKept(change, skinning);
   EXPECT_GT(kept, 0.1 * mesh.vertices.size());
   skinning.FollowGraph(after, mesh.vertices, change);
   ExpectSkinnedBy(after, mesh, skinning);
