@@ -7,7 +7,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
-#include "splitfusion/lib/tracking/image_shift.h"
+#include "splitfusion/lib/tracking/translation_search.h"
 #include "splitfusion/lib/visibility/exposure.h"
 
 namespace splitfusion {
@@ -198,8 +198,10 @@ bool SplitFusion::PlaceWhereSeen(Surface* surface, SurfaceReport* report) {
   const Stopwatch stopwatch;
   const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
   const std::optional<Rigid3d> shift =
-      FindImageShift(RenderAlone(*surface, camera).raster.depth, live_,
-                     static_cast<std::uint16_t>(surface->id()));
+      FindTranslation(VisibleSamples(RenderAlone(*surface, camera), *surface,
+                                     options_.render_stride),
+                      WarpField(surface->graph()), live_,
+                      static_cast<std::uint16_t>(surface->id()));
   if (shift) {
     ApplyRigidMotion(*shift, surface->mutable_graph());
     rendering_ = RenderMeshes(surfaces_, camera);

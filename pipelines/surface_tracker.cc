@@ -6,6 +6,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/tracking/agreement.h"
 
 namespace splitfusion {
 namespace {
@@ -224,8 +225,7 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
   const Association association =
       target.associator.Associate(samples, warp, stage.stride, stage.gates);
   const AssociationCounts& counts = association.counts;
-  // Truncated at 2 cm and at a fifth of the grey range; a sample that fits
-  // nowhere counts 1 for each.
+  // Truncated; a sample that fits nowhere counts 1 for each.
   double sum = 2.0 * (counts.Count(Rejection::kMisfit) +
                       counts.Count(Rejection::kAbsent) +
                       counts.Count(Rejection::kOccluded));
@@ -233,8 +233,8 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
     const double distance =
         c.warped_normal.dot(warp.WarpPoint(c.model.skinning, c.model.point) -
                             c.target) *
-        std::sqrt(c.weight) / 0.02;
-    const double difference = c.intensity_difference / 0.2;
+        std::sqrt(c.weight) / kAgreeingDistance;
+    const double difference = c.intensity_difference / kAgreeingGrey;
     sum += std::min(1.0, distance * distance) +
            std::min(1.0, difference * difference);
   }
