@@ -81,8 +81,8 @@ struct LiveGrid {
 
 /// How much speaks for a translation.
 struct Vote {
-  float worth = 0;  ///< In points that agree.
-  float depth_change = 0;
+  float worth = 0;         ///< In points that agree.
+  float depth_change = 0;  ///< Metres along the optical axis.
 };
 
 /// How well two cells agree but for their depth: 0..1.
@@ -141,8 +141,8 @@ std::optional<Rigid3d> FindTranslation(const std::vector<ModelSample>& samples,
   cv::Point best_shift;
   for (int y = to.y - from.br().y + 1; y < to.br().y - from.y; ++y) {
     for (int x = to.x - from.br().x + 1; x < to.br().x - from.x; ++x) {
-      const Vote vote = VoteFor({x, y}, model, grid, z + kOneBody.At(z));
       const cv::Point shift(x, y);
+      const Vote vote = VoteFor(shift, model, grid, z + kOneBody.At(z));
       // Of equal ones the shortest.
       if (vote.worth < best.worth ||
           (vote.worth == best.worth &&

@@ -20,8 +20,13 @@ namespace splitfusion {
 /// as they mislead centroids and silhouettes. The silhouette counts half: what
 /// the points cover of the surface, less what they would hide behind it.
 ///
+/// Ours; the paper does not say how a surface is found again. The change of
+/// depth is one for the whole surface, and its way in the image is taken at the
+/// median depth of what is seen: a start for tracking, not a pose.
+///
 /// `samples`: of the surface as if nothing hid it, at every n-th pixel.
-/// @return camera from camera; empty if nothing of the surface is seen, or no
+/// @return motion of the camera frame, metres; empty if nothing of the surface
+/// is seen, or no
 ///     translation explains more than it contradicts.
 std::optional<Rigid3d> FindTranslation(const std::vector<ModelSample>& samples,
                                        const WarpField& warp,
