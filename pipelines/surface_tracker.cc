@@ -190,6 +190,7 @@ SurfaceTracker::SurfaceTracker(TrackerOptions options,
       energy_(std::move(energy)) {
   options_.Check();
   solver.Check();
+  CheckEnergy(energy_);
   associations_.Check(options_.association);
   solver_ = solvers.Make(solver.solver, solver);
 }

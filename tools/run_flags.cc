@@ -65,7 +65,7 @@ PipelineOptions PipelineOptionsFromFlags(const Registries& registries) {
   ApplyPreset(FLAGS_preset, &options);
   TakeMethodFlags(&options);
   try {
-    ParseEnergy(options.terms, registries.terms);
+    CheckEnergy(ParseEnergy(options.terms, registries.terms));
   } catch (const OptionError& error) {
     // A text within a text: what is wrong in it names the flag.
     throw InputError(std::string("--terms: ") + error.what());

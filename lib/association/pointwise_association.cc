@@ -8,21 +8,20 @@
 #include <utility>
 
 #include "splitfusion/lib/association/lost_parts.h"
+#include "splitfusion/lib/base/median.h"
 
 namespace splitfusion {
 namespace {
 
 /// Takes the median difference of grey values, a change of exposure, out.
 void RemoveCommonBrightness(std::vector<Correspondence>* correspondences) {
-  if (correspondences->empty()) return;
   std::vector<float> differences;
   differences.reserve(correspondences->size());
   for (const Correspondence& c : *correspondences) {
     differences.push_back(c.intensity_difference);
   }
-  const auto middle = differences.begin() + differences.size() / 2;
-  std::nth_element(differences.begin(), middle, differences.end());
-  for (Correspondence& c : *correspondences) c.intensity_difference -= *middle;
+  const float common = Median(std::move(differences));
+  for (Correspondence& c : *correspondences) c.intensity_difference -= common;
 }
 
 }  // namespace

@@ -61,13 +61,13 @@ class ResidualSink {
 
   /// Adds one residual vector per tuple of different nodes; `functors[i]` sees
   /// the twists of `nodes[i]` as (T const* const* twists, T* residual), in
-  /// metres. Plain autodiff. `total` as above. Call it once.
+  /// metres. Plain autodiff; N is the number of tuples. Call it once.
   ///
   /// @throw InputError if a tuple has a node twice.
   template <typename Functor>
   void AddNodes(const std::vector<std::vector<int>>& nodes,
-                const std::vector<Functor>& functors, double total = 0) {
-    Count(nodes.size(), total);
+                const std::vector<Functor>& functors) {
+    Count(nodes.size(), 0);
     if (nodes.empty()) return;
     CheckTuples(nodes);
     residuals_.of_nodes =

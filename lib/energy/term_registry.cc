@@ -99,6 +99,15 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
   return energy;
 }
 
+void CheckEnergy(const Energy& energy) {
+  const bool any = std::any_of(
+      energy.begin(), energy.end(),
+      [](const WeightedTerm& term) { return term.options.weight > 0; });
+  if (!any) {
+    throw InputError("--terms: all weights are 0: expected one above 0");
+  }
+}
+
 std::string EnergyText(const Energy& energy) {
   std::string text;
   for (const WeightedTerm& term : energy) {

@@ -34,6 +34,9 @@ using Energy = std::vector<WeightedTerm>;
 ///     number or out of range, or a syntax error; says what is known.
 Energy ParseEnergy(const std::string& text, const TermRegistry& registry);
 
+/// @throw InputError if no term has a weight: nothing would be minimised.
+void CheckEnergy(const Energy& energy);
+
 /// Text that ParseEnergy() reads back, every option spelled out.
 std::string EnergyText(const Energy& energy);
 

@@ -86,14 +86,6 @@ void CheckSequence(const SequenceEntry& before, const SequenceEntry& now) {
 
 }  // namespace
 
-void MakeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw InputError(folder + ": cannot be created (" + error.message() + ")");
-  }
-}
-
 void AddExperiment(const ExperimentFolder& folder,
                    const Experiment& experiment) {
   CheckNoOthers(folder);

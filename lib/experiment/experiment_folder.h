@@ -45,11 +45,6 @@ class ExperimentFolder {
   std::string root_;
 };
 
-/// Makes a folder, and those above it.
-///
-/// @throw InputError if that cannot be done.
-void MakeFolder(const std::string& folder);
-
 /// Adds an experiment to those that were run into the folder, unless it is
 /// there.
 ///

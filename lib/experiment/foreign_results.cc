@@ -6,6 +6,7 @@
 
 #include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/make_folder.h"
 #include "splitfusion/lib/evaluation/ghosts.h"
 #include "splitfusion/lib/evaluation/ground_truth.h"
 #include "splitfusion/lib/evaluation/headline.h"
@@ -119,8 +120,7 @@ void AddForeignResults(const ExperimentFolder& folder,
     record.host = HostName();
     record.started = record.ended = TimeText();
     const std::string path = folder.TaskFolder(record.task.name);
-    std::error_code error;
-    std::filesystem::create_directories(path, error);
+    MakeFolder(path);
     WriteTaskRecord(path, record);
   }
 }

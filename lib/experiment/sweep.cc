@@ -15,6 +15,7 @@
 
 #include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/make_folder.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/experiment/task_evaluation.h"
 

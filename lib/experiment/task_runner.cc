@@ -6,6 +6,7 @@
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/make_folder.h"
 #include "splitfusion/lib/base/random_id.h"
 #include "splitfusion/lib/experiment/run_state.h"
 #include "splitfusion/lib/experiment/task_evaluation.h"

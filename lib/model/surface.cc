@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/median.h"
 #include "splitfusion/lib/geometry/mesh_pieces.h"
 #include "splitfusion/lib/model/canonical_places.h"
 #include "splitfusion/lib/model/observe_surface.h"
@@ -24,10 +25,7 @@ double MedianDepth(const LiveView& live, int id) {
       }
     }
   }
-  if (depths.empty()) return 0;
-  const auto middle = depths.begin() + depths.size() / 2;
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return Median(std::move(depths));
 }
 
 /// A live point as near as this to a vertex is on the mesh, voxels.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/make_folder.h"
 #include "splitfusion/lib/base/random_id.h"
 
 namespace splitfusion {
@@ -16,15 +17,6 @@ namespace fs = std::filesystem;
 
 /// Of a run that is put into place, in its marker.
 constexpr char kCheckpoint[] = "checkpoint.bin";
-
-void MakeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) {
-    throw InputError(folder + ": cannot be made a run directory (" +
-                     (error ? error.message() : "not a directory") + ")");
-  }
-}
 
 /// Whether it holds anything but log files and what `own` names.
 bool HoldsOthers(const std::string& folder, const std::vector<fs::path>& own) {

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "splitfusion/lib/base/median.h"
+
 namespace splitfusion {
 namespace {
 
@@ -171,14 +173,6 @@ RunSummary SummaryBuilder::Build() const {
     summary.surfaces.push_back(surface);
   }
   return summary;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  if (values.size() % 2 == 1) return values[middle];
-  return 0.5 * (values[middle - 1] + values[middle]);
 }
 
 }  // namespace splitfusion

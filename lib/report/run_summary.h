@@ -106,9 +106,6 @@ class SummaryBuilder {
   std::map<int, SurfaceSummary> surfaces_;
 };
 
-/// Middle value (mean of the two middle ones for an even number); 0 if empty.
-double Median(std::vector<double> values);
-
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_REPORT_RUN_SUMMARY_H_

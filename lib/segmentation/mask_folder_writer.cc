@@ -6,6 +6,7 @@
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
+#include "splitfusion/lib/base/make_folder.h"
 #include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/segmentation/detection_list.h"
 #include "splitfusion/lib/sequence/image_file.h"
@@ -105,11 +106,7 @@ MaskFolderWriter::MaskFolderWriter(const std::string& folder,
                                    const Settings& settings)
     : folder_(folder) {
   const fs::path path = fs::path(folder) / kSettingsFile;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) {
-    throw InputError(folder + ": cannot be made a folder of masks");
-  }
+  MakeFolder(folder);
   if (fs::exists(path)) {
     CheckEqual(path, ReadSettings(path), settings);
   } else if (!LabelStems(folder).empty()) {

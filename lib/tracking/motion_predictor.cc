@@ -3,7 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "splitfusion/lib/base/median.h"
 
 namespace splitfusion {
 namespace {
@@ -63,9 +66,7 @@ Rigid3d MotionPredictor::UsualStep() const {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const Eigen::Vector3d& s : steps_) values.push_back(s[axis]);
-    const auto middle = values.begin() + values.size() / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    step.translation()[axis] = *middle;
+    step.translation()[axis] = Median(std::move(values));
   }
   step.translation() *= std::exp(-hidden_frames_ / kRestFrames);
   return step;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "splitfusion/lib/base/median.h"
 #include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/tracking/agreement.h"
 
@@ -51,9 +53,7 @@ cv::Rect BoundsOf(const std::vector<Cell>& cells) {
 float MedianDepth(const std::vector<Cell>& cells) {
   std::vector<float> depths;
   for (const Cell& cell : cells) depths.push_back(cell.depth);
-  const auto middle = depths.begin() + depths.size() / 2;
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return Median(std::move(depths));
 }
 
 /// The live frame on the grid.

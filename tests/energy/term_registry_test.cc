@@ -39,6 +39,13 @@ TEST(ParseEnergy, LeavesOutWhatHasADefault) {
   EXPECT_EQ(ParseEnergy("arap(weight=0)", BuiltinTerms())[0].options.weight, 0);
 }
 
+TEST(CheckEnergy, AsksForOneWeight) {
+  CheckEnergy(ParseEnergy("arap(weight=0) color", BuiltinTerms()));
+  ExpectInputError(
+      [] { CheckEnergy(ParseEnergy("arap(weight=0)", BuiltinTerms())); },
+      "--terms: all weights are 0: expected one above 0");
+}
+
 TEST(ParseEnergy, UnknownTermsListTheKnownOnes) {
   const std::string known = ": expected point_to_plane, color,";
   ExpectRefused("arapp(weight=1)", "term = arapp" + known);

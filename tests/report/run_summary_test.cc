@@ -11,12 +11,6 @@
 namespace splitfusion {
 namespace {
 
-TEST(Median, IsTheMiddleValue) {
-  EXPECT_EQ(Median({}), 0);
-  EXPECT_EQ(Median({3, 1, 2}), 2);
-  EXPECT_EQ(Median({4, 1, 2, 3}), 2.5);
-}
-
 TEST(SummaryBuilder, CountsTimesOverFrames) {
   SummaryBuilder builder;
   for (const double seconds : {1.0, 2.0, 9.0}) {

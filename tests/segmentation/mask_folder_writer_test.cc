@@ -158,7 +158,7 @@ TEST(MaskFolderWriter, RefusesOtherSettingsAndOtherImages) {
   EXPECT_EQ(writer.size(), 0);
   folder.Write("file", "");
   ExpectInputError([&] { MaskFolderWriter w(folder / "file", kSettings); },
-                   "file: cannot be made a folder of masks");
+                   "file: cannot be made (");
 }
 
 TEST(DetectionList, NamesTheBrokenLine) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iomanip>
 
-#include "splitfusion/lib/report/run_summary.h"
+#include "splitfusion/lib/base/median.h"
 
 namespace splitfusion {
 namespace {
