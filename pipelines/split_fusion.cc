@@ -242,7 +242,7 @@ void SplitFusion::Fuse(FrameReport* report) {
     if (StateOf(reports[i].id) != TrackState::kTracked) return;
     Surface& surface = *surfaces_.at(reports[i].id);
     Stopwatch stopwatch;
-    surface.Fuse(live_);
+    reports[i].refuted_nodes = surface.Fuse(live_);
     reports[i].fuse_seconds = stopwatch.Restart();
     if (!surface.is_ray_cast()) surface.UpdateMesh();
     reports[i].mesh_seconds = stopwatch.Restart();

@@ -255,13 +255,15 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
                                     : CentroidOf(samples, start);
   Rigid3d motion = MeanRigidMotion(*graph) * MeanRigidMotion(start).inverse();
   motion.translation() = motion * pivot - pivot;
-  const bool must_fit = target.surface != 0 && !graph->rigid();
-  report->reason = ReasonForLoss(must_fit, motion, *report);
+  report->reason = ReasonForLoss(motion, *report);
   if (report->reason.empty() && !graph->rigid()) {
     DeformationGraph before = start;
     ApplyRigidMotion(back, &before);
     TrackNonRigid(samples, target, before.motions, graph, report);
-    report->reason = ReasonForLoss(must_fit, motion, *report);
+    report->reason = ReasonForLoss(motion, *report);
+    if (report->reason.empty() && target.surface != 0) {
+      report->reason = ReasonForMisfit(*report);
+    }
   }
   return report->reason.empty();
 }
@@ -347,7 +349,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   return settled;
 }
 
-std::string SurfaceTracker::ReasonForLoss(bool must_fit, const Rigid3d& motion,
+std::string SurfaceTracker::ReasonForLoss(const Rigid3d& motion,
                                           const SurfaceReport& report) const {
   if (report.rounds.empty()) return "no model in view";
   const TrackingRound& last = report.rounds.back();
@@ -361,11 +363,6 @@ std::string SurfaceTracker::ReasonForLoss(bool must_fit, const Rigid3d& motion,
     return "only " + std::to_string(counts.accepted) + " of " +
            std::to_string(comparable) + " model points fit the depth";
   }
-  const int expected = comparable + counts.Count(Rejection::kAbsent);
-  if (must_fit && counts.accepted < options_.min_fit * expected) {
-    return "only " + std::to_string(counts.accepted) + " of " +
-           std::to_string(expected) + " model points in view lie on it";
-  }
   if (!last.solver.usable) return "solver: " + last.solver.message;
   const double translation = motion.translation().norm();
   if (translation > options_.max_translation) {
@@ -377,6 +374,15 @@ std::string SurfaceTracker::ReasonForLoss(bool must_fit, const Rigid3d& motion,
            " degrees from the prediction";
   }
   return "";
+}
+
+std::string SurfaceTracker::ReasonForMisfit(const SurfaceReport& report) const {
+  const AssociationCounts& counts = report.rounds.back().association;
+  const int expected = counts.accepted + counts.Count(Rejection::kMisfit) +
+                       counts.Count(Rejection::kAbsent);
+  if (counts.accepted >= options_.min_fit * expected) return "";
+  return "only " + std::to_string(counts.accepted) + " of " +
+         std::to_string(expected) + " model points in view lie on it";
 }
 
 }  // namespace splitfusion

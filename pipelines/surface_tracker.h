@@ -42,10 +42,10 @@ struct TrackerOptions {
   /// ... or below this fraction of the samples that meet live depth of the
   /// surface ...
   double min_accepted = 0.25;
-  /// ... or if less than this fraction of what should be in view of it, apart
-  /// from what no depth tells of, lies on it. Not of the background, before
-  /// which undetected things may stand, nor of rigid surfaces, which are kept
-  /// for people in the presets that do so.
+  /// ... or if after all stages less than this fraction of what should be in
+  /// view of it, apart from what no depth tells of, lies on it. Of deforming
+  /// surfaces, but for the background, before which undetected things may
+  /// stand ...
   double min_fit = 0.45;
   /// ... or if the surface moved farther than predicted by this much.
   double max_translation = 0.35;  ///< Metres.
@@ -120,8 +120,9 @@ class SurfaceTracker {
                 const TrackingStage& stage, const std::string& name,
                 double anneal, const std::vector<NodeMotion>& before,
                 DeformationGraph* graph, SurfaceReport* report) const;
-  std::string ReasonForLoss(bool must_fit, const Rigid3d& motion,
+  std::string ReasonForLoss(const Rigid3d& motion,
                             const SurfaceReport& report) const;
+  std::string ReasonForMisfit(const SurfaceReport& report) const;
 
   TrackerOptions options_;
   std::vector<TrackingStage> rigid_stages_, non_rigid_stages_;

@@ -46,8 +46,8 @@ DEFINE_int32(label, -1,
 DEFINE_int32(depth_every, 10,
              "Compare with live depth in every n-th frame; 0 = never.");
 DEFINE_bool(whole_model, false,
-            "Judge the whole final model in every frame, also what was seen "
-            "only later.");
+            "Judge all of the final model that is in use in a frame, also what "
+            "was seen only later.");
 DEFINE_bool(with_unknown, true,
             "Judge all that had been seen by each frame; there is no other "
             "measure any more.");

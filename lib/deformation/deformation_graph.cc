@@ -47,16 +47,12 @@ Eigen::Vector3d Center(const DeformationGraph& graph) {
   return graph.positions.empty() ? sum : sum / graph.size();
 }
 
-NodeRange DeformationGraph::NodesInUse(int frame) const {
-  NodeRange range{0, size()};
-  for (std::size_t i = 1; i < models.size(); ++i) {
-    if (models[i].frame <= frame) {
-      range.begin = models[i].node;
-    } else {
-      range.end = std::min(range.end, models[i].node);
-    }
-  }
-  return range;
+bool DeformationGraph::IsInUse(int node, int frame) const {
+  const auto next = std::upper_bound(
+      parts.begin(), parts.end(), node,
+      [](int index, const ModelPart& part) { return index < part.node; });
+  return next == parts.begin() ||
+         (next[-1].first_frame <= frame && frame < next[-1].end_frame);
 }
 
 }  // namespace splitfusion

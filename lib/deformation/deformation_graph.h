@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_DEFORMATION_DEFORMATION_GRAPH_H_
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "splitfusion/lib/geometry/rigid3.h"
@@ -21,20 +22,15 @@ struct NodeMotion {
   }
 };
 
-/// Where one model of a surface begins that was re-anchored: its first node and
-/// the first frame in which it is in use.
-struct ModelStart {
-  int node = 0;   ///< Index of the first node.
-  int frame = 0;  ///< Index of the first frame.
-};
+/// Nodes that are in use in some frames only, of a surface parts of which were
+/// refuted or that was re-anchored.
+struct ModelPart {
+  /// Stands for the end of a part that is in use to the last frame.
+  static constexpr int kNoEnd = std::numeric_limits<int>::max();
 
-/// A range of nodes, the last one excluded.
-struct NodeRange {
-  int begin = 0;  ///< Index of the first node.
-  int end = 0;    ///< Index behind the last node.
-
-  /// Whether a node is among them.
-  bool Contains(int node) const { return node >= begin && node < end; }
+  int node = 0;            ///< Index of the first node; up to the next part's.
+  int first_frame = 0;     ///< Index of the first frame.
+  int end_frame = kNoEnd;  ///< Index of the frame behind the last one.
 };
 
 /// The embedded deformation graph of one surface (SplitFusion IV-B).
@@ -52,19 +48,19 @@ struct DeformationGraph {
   /// known of all of them, it is of none, and all counts as seen from the
   /// start.
   std::vector<int> first_seen;
-  /// Models of a surface that was re-anchored, ascending; they have no nodes or
-  /// frames in common. Empty: one model.
-  std::vector<ModelStart> models;
+  /// Parts that have no edge in common, ascending by their nodes. Empty: all
+  /// nodes are in use in all frames.
+  std::vector<ModelPart> parts;
 
   /// Number of nodes.
   int size() const { return static_cast<int>(positions.size()); }
   /// Whether one motion carries the whole surface.
   bool rigid() const { return positions.size() == 1; }
 
-  /// Nodes of the model that is in use in a frame.
-  NodeRange NodesInUse(int frame) const;
+  /// Whether a node is in use in a frame.
+  bool IsInUse(int node, int frame) const;
 
-  /// Saves or restores it, see lib/base/archive.h; not `models`, which only
+  /// Saves or restores it, see lib/base/archive.h; not `parts`, which only
   /// joined models have.
   template <typename Archive>
   void Serialize(Archive* archive) {

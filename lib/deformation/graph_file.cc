@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "splitfusion/lib/base/atomic_file.h"
@@ -80,23 +81,38 @@ std::vector<int> FirstSeen(const std::string& path, const Json& json,
   return Frames(path, "first_seen", json);
 }
 
-/// Models that begin at ascending nodes and frames: [[node, frame], ...].
-std::vector<ModelStart> Models(const std::string& path, const Json& json,
-                               int nodes) {
-  std::vector<ModelStart> models;
-  bool ascending = json.is_array();
-  for (const Json& item : json) {
-    const std::vector<int> start =
-        item.is_array() ? Frames(path, "models", item) : std::vector<int>();
-    ascending = ascending && start.size() == 2 && start[0] < nodes &&
-                (models.empty() || (models.back().node < start[0] &&
-                                    models.back().frame < start[1]));
-    if (!ascending) break;
-    models.push_back({start[0], start[1]});
+/// [first node, first frame, frame behind the last or null]; nothing if it is
+/// something else.
+std::optional<ModelPart> ParsePart(const Json& json) {
+  const auto is_index = [](const Json& item) {
+    return item.is_number_unsigned() && item.get<std::uint64_t>() <= INT32_MAX;
+  };
+  if (!json.is_array() || json.size() != 3 || !is_index(json[0]) ||
+      !is_index(json[1]) || !(json[2].is_null() || is_index(json[2]))) {
+    return std::nullopt;
   }
-  if (ascending && (models.empty() || models.front().node == 0)) return models;
-  throw InputError(path + ": field 'models': " + BriefJson(json) +
-                   ": expected first nodes and frames, ascending, from node 0");
+  return ModelPart{json[0], json[1],
+                   json[2].is_null() ? ModelPart::kNoEnd : json[2].get<int>()};
+}
+
+/// Parts of all nodes, by ascending ones: [[node, frame, end], ...].
+std::vector<ModelPart> Parts(const std::string& path, const Json& json,
+                             int nodes) {
+  std::vector<ModelPart> parts;
+  bool good = json.is_array();
+  for (const Json& item : json) {
+    const std::optional<ModelPart> part = ParsePart(item);
+    good = good && part && part->node < nodes &&
+           part->first_frame < part->end_frame &&
+           part->node >= (parts.empty() ? 0 : parts.back().node + 1) &&
+           (part->node == 0 || !parts.empty());
+    if (!good) break;
+    parts.push_back(*part);
+  }
+  if (good) return parts;
+  throw InputError(path + ": field 'parts': " + BriefJson(json) +
+                   ": expected first nodes, ascending, from node 0, with first "
+                   "frames and the frames behind the last");
 }
 
 /// A field, not a copy of it: copies are made as deep as the value is, which
@@ -127,7 +143,13 @@ DeformationGraph ParseGraph(const std::string& path, const Json& json) {
   const Json none = Json::array();
   graph.first_seen = FirstSeen(path, FieldOr(json, "first_seen", none),
                                graph.positions.size());
-  graph.models = Models(path, FieldOr(json, "models", none), graph.size());
+  // Without their parts all models of a surface would be shown at once.
+  if (!FieldOr(json, "models", none).empty()) {
+    throw InputError(path +
+                     ": field 'models': expected a run of this version, which "
+                     "has 'parts'");
+  }
+  graph.parts = Parts(path, FieldOr(json, "parts", none), graph.size());
   return graph;
 }
 
@@ -148,16 +170,18 @@ void WriteGraph(const std::string& path, const DeformationGraph& graph,
   for (const Eigen::Vector3d& g : graph.positions) {
     positions.push_back({g.x(), g.y(), g.z()});
   }
-  Json models = Json::array();
-  for (const ModelStart& start : graph.models) {
-    models.push_back({start.node, start.frame});
+  Json parts = Json::array();
+  for (const ModelPart& part : graph.parts) {
+    const bool ends = part.end_frame != ModelPart::kNoEnd;
+    parts.push_back(
+        {part.node, part.first_frame, ends ? Json(part.end_frame) : Json()});
   }
   const Json json = {{"node_spacing", graph.node_spacing},
                      {"neighbors_per_point", neighbors_per_point},
                      {"positions", positions},
                      {"edges", graph.neighbors},
                      {"first_seen", graph.first_seen},
-                     {"models", models}};
+                     {"parts", parts}};
   WriteFileAtomically(path, [&](std::ostream& out) { out << json << '\n'; });
 }
 

@@ -9,7 +9,7 @@ namespace splitfusion {
 
 /// Writes `graph.json`: {"node_spacing", "neighbors_per_point", "positions":
 /// [[x, y, z], ...], "edges": [[j, ...], ...], "first_seen": [frame, ...],
-/// "models": [[first node, first frame], ...]};
+/// "parts": [[first node, first frame, frame behind the last or null], ...]};
 /// positions canonical, metres; edges[i] are the neighbours of node i. Motions
 /// are in motions.bin.
 ///
@@ -18,7 +18,7 @@ void WriteGraph(const std::string& path, const DeformationGraph& graph,
                 int neighbors_per_point);
 
 /// Reads what WriteGraph wrote; motions are identity. `neighbors_per_point`
-/// may be null. "first_seen" and "models" may be missing or empty.
+/// may be null. "first_seen" and "parts" may be missing or empty.
 ///
 /// @throw InputError on a missing or malformed file; names the field.
 DeformationGraph ReadGraph(const std::string& path, int* neighbors_per_point);

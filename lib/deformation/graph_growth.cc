@@ -217,6 +217,11 @@ void GraphOptions::List(OptionList* list) {
       "growth_batch", &growth_batch, Range::Share(), "",
       "Nodes that come or go wait until they are this share of the graph's "
       "(fewer, larger changes are faster).");
+  list->Number("refuted_frames", &refuted_frames, Range::AtLeast(0), "frames",
+               "A part of a deforming surface that hangs in free space in so "
+               "many frames on end is forgotten; 0 = never.");
+  list->Number("refuted_share", &refuted_share, Range::Share(), "",
+               "Such parts wait until they are this share of the nodes.");
 }
 
 void GraphOptions::Check() const { CheckOptions(*this); }

@@ -30,6 +30,12 @@ struct GraphOptions {
   /// graph's: every change renews edges and skinning. Meanwhile nodes a little
   /// farther away carry the points.
   double growth_batch = 0.005;
+  /// What nodes carry that live depth refutes in so many frames on end is
+  /// forgotten, see RefutedParts; 0: never, and it is fused as the rest.
+  int refuted_frames = 3;
+  /// Refuted nodes wait until they are so many, as a part of the graph's;
+  /// meanwhile they are carved as the rest.
+  double refuted_share = 0.02;
 
   /// Names, ranges and meaning of all fields.
   void List(OptionList* list);

@@ -30,11 +30,19 @@ int AnimatedSurface::FirstFrame() const {
 }
 
 bool AnimatedSurface::BeginsIn(int frame) const {
-  const std::vector<ModelStart>& models = surface_.graph.models;
-  return FirstFrame() == frame || std::any_of(models.begin(), models.end(),
-                                              [frame](const ModelStart& start) {
-                                                return start.frame == frame;
-                                              });
+  const std::vector<ModelPart>& parts = surface_.graph.parts;
+  return FirstFrame() == frame ||
+         std::any_of(parts.begin(), parts.end(),
+                     [frame](const ModelPart& part) {
+                       return part.first_frame == frame;
+                     });
+}
+
+bool AnimatedSurface::EndsBetween(int before, int frame) const {
+  const std::vector<ModelPart>& parts = surface_.graph.parts;
+  return std::any_of(parts.begin(), parts.end(), [&](const ModelPart& part) {
+    return before < part.end_frame && part.end_frame <= frame;
+  });
 }
 
 WarpField AnimatedSurface::WarpAt(int frame) const {
@@ -57,10 +65,11 @@ std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesAt(int frame) const {
 }
 
 std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesInUse(int frame) const {
-  const NodeRange in_use = surface_.graph.NodesInUse(frame);
   std::vector<Eigen::Vector3i> triangles;
   for (const Eigen::Vector3i& t : surface_.mesh.triangles) {
-    if (in_use.Contains(skinnings_[t[0]].nodes[0])) triangles.push_back(t);
+    if (surface_.graph.IsInUse(skinnings_[t[0]].nodes[0], frame)) {
+      triangles.push_back(t);
+    }
   }
   return triangles;
 }

@@ -26,8 +26,11 @@ class AnimatedSurface {
   bool Tracked(int frame) const;
   /// First frame with motions; -1 if there is none.
   int FirstFrame() const;
-  /// Whether it, or a model of it, begins in a frame.
+  /// Whether it, or a part of its model, begins in a frame.
   bool BeginsIn(int frame) const;
+  /// Whether a part of its model is in use in `frame` no more, but still was
+  /// in `before`.
+  bool EndsBetween(int before, int frame) const;
 
   /// Warp into the camera frame of a frame that has motions.
   WarpField WarpAt(int frame) const;
@@ -39,8 +42,8 @@ class AnimatedSurface {
   /// Triangles of the mesh that had been seen by a frame (SeenTriangles).
   std::vector<Eigen::Vector3i> TrianglesAt(int frame) const;
 
-  /// Triangles of the model that is in use in a frame, also what was seen only
-  /// later.
+  /// Triangles of the parts of the model that are in use in a frame, also what
+  /// was seen only later.
   std::vector<Eigen::Vector3i> TrianglesInUse(int frame) const;
 
   /// Both of them, as warped/FRAME.ply has them; no normals, no colours.

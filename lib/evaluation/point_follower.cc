@@ -55,34 +55,20 @@ class Follower {
     }
   }
 
-  /// Attaches what is not attached yet to the surfaces that are there in
-  /// `frame`, if `only_newborn` to those that were not there before. Those also
-  /// take over points of the background that lie on them: they were not yet
-  /// told apart from it.
-  bool Attach(const RecordedFrame& frame, bool only_newborn) {
-    std::vector<const AnimatedSurface*> present;
-    for (const AnimatedSurface& surface : surfaces_) {
-      if (surface.HasMotions(frame.index) &&
-          (!only_newborn || surface.BeginsIn(frame.index))) {
-        present.push_back(&surface);
-      }
-    }
-    if (present.empty()) return false;
-    const FrameMask mask(run_, frame);
-    const SurfaceAttacher attacher(present, frame.index);
-    for (FollowedPoint& point : points_) {
-      const bool held =
-          point.attachment && point.attachment->surface->recorded().id != 0;
-      if (held || (point.attachment && !only_newborn)) continue;
-      const std::optional<Attachment> found =
-          attacher.Attach(point.position, mask.IdAt(point.position));
-      if (!found) continue;
-      if (point.attachment && found->offset.norm() > kForegroundDistance) {
-        continue;
-      }
-      point.attachment = found;
-    }
-    return mask.known();
+  /// Attaches all points to the surfaces that are there in `frame`.
+  bool Attach(const RecordedFrame& frame) {
+    return Attach(frame, [](const AnimatedSurface&) { return true; });
+  }
+
+  /// Attaches what is not attached any more to the surfaces of which a part
+  /// begins, or has ended since the frame `before`. Where one begins it also
+  /// takes over points of the background that lie on it: they were not yet told
+  /// apart from it.
+  void Reattach(const RecordedFrame& before, const RecordedFrame& frame) {
+    Attach(frame, [&](const AnimatedSurface& surface) {
+      return surface.BeginsIn(frame.index) ||
+             surface.EndsBetween(before.index, frame.index);
+    });
   }
 
   /// Carries all points from one frame into the next.
@@ -96,7 +82,7 @@ class Follower {
       }
     }
     for (FollowedPoint& point : points_) {
-      // A model that is not in use any more says nothing of the frame.
+      // A part that is not in use any more says nothing of the frame.
       if (point.attachment && !IsInUse(*point.attachment, to.index)) {
         point.attachment.reset();
       }
@@ -113,9 +99,36 @@ class Follower {
   const std::vector<FollowedPoint>& points() const { return points_; }
 
  private:
+  template <typename Condition>
+  bool Attach(const RecordedFrame& frame, const Condition& condition) {
+    std::vector<const AnimatedSurface*> present;
+    for (const AnimatedSurface& surface : surfaces_) {
+      if (surface.HasMotions(frame.index) && condition(surface)) {
+        present.push_back(&surface);
+      }
+    }
+    if (present.empty()) return false;
+    const FrameMask mask(run_, frame);
+    const SurfaceAttacher attacher(present, frame.index);
+    for (FollowedPoint& point : points_) {
+      if (point.attachment && point.attachment->surface->recorded().id != 0) {
+        continue;
+      }
+      const std::optional<Attachment> found =
+          attacher.Attach(point.position, mask.IdAt(point.position));
+      if (!found ||
+          (point.attachment && (found->offset.norm() > kForegroundDistance ||
+                                !found->surface->BeginsIn(frame.index)))) {
+        continue;
+      }
+      point.attachment = found;
+    }
+    return mask.known();
+  }
+
   static bool IsInUse(const Attachment& attachment, int frame) {
-    return attachment.surface->recorded().graph.NodesInUse(frame).Contains(
-        attachment.skinning.nodes[0]);
+    return attachment.surface->recorded().graph.IsInUse(
+        attachment.skinning.nodes[0], frame);
   }
 
   const RecordedRun& run_;
@@ -155,13 +168,13 @@ FollowedPoints FollowPoints(const RecordedRun& run,
   if (queries.empty()) return result;
   const RecordedFrame* frame = &QueryFrame(run, queries);
   Follower follower(run, surfaces, queries);
-  result.by_mask = follower.Attach(*frame, /*only_newborn=*/false);
+  result.by_mask = follower.Attach(*frame);
   Append(queries, frame->index, follower, &result);
   const int last = frame->index + frames;
   for (const RecordedFrame& next : run.frames) {
     if (next.index <= frame->index || next.index > last) continue;
     follower.Advance(*frame, next);
-    follower.Attach(next, /*only_newborn=*/true);
+    follower.Reattach(*frame, next);
     Append(queries, next.index, follower, &result);
     frame = &next;
   }

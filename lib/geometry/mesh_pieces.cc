@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <iterator>
 #include <numeric>
-#include <vector>
 
 namespace splitfusion {
 namespace {
@@ -42,19 +42,29 @@ std::vector<double> PieceAreas(const TriangleMesh& mesh, Pieces* pieces) {
   return areas;
 }
 
+/// Of every vertex whether it is of a piece that stays.
+std::vector<char> InLargePieces(const TriangleMesh& mesh, double min_area) {
+  Pieces pieces(mesh.vertices.size());
+  const std::vector<double> areas = PieceAreas(mesh, &pieces);
+  std::vector<char> large(areas.size());
+  if (areas.empty()) return large;
+  const double limit =
+      std::min(min_area, *std::max_element(areas.begin(), areas.end()));
+  for (std::size_t i = 0; i < large.size(); ++i) {
+    const double area = areas[pieces.Find(static_cast<int>(i))];
+    large[i] = area >= limit && area > 0;
+  }
+  return large;
+}
+
 }  // namespace
 
 TriangleMesh WithoutSmallPieces(const TriangleMesh& mesh, double min_area) {
-  Pieces pieces(mesh.vertices.size());
-  const std::vector<double> areas = PieceAreas(mesh, &pieces);
-  if (areas.empty()) return mesh;
-  const double limit =
-      std::min(min_area, *std::max_element(areas.begin(), areas.end()));
+  const std::vector<char> large = InLargePieces(mesh, min_area);
   TriangleMesh kept;
   std::vector<int> new_index(mesh.vertices.size(), -1);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const double area = areas[pieces.Find(static_cast<int>(i))];
-    if (area < limit || area == 0) continue;
+    if (large[i] == 0) continue;
     new_index[i] = static_cast<int>(kept.vertices.size());
     kept.vertices.push_back(mesh.vertices[i]);
     if (!mesh.normals.empty()) kept.normals.push_back(mesh.normals[i]);
@@ -65,6 +75,16 @@ TriangleMesh WithoutSmallPieces(const TriangleMesh& mesh, double min_area) {
     kept.triangles.emplace_back(new_index[t[0]], new_index[t[1]],
                                 new_index[t[2]]);
   }
+  return kept;
+}
+
+std::vector<Eigen::Vector3i> TrianglesOfLargePieces(const TriangleMesh& mesh,
+                                                    double min_area) {
+  const std::vector<char> large = InLargePieces(mesh, min_area);
+  std::vector<Eigen::Vector3i> kept;
+  std::copy_if(mesh.triangles.begin(), mesh.triangles.end(),
+               std::back_inserter(kept),
+               [&](const Eigen::Vector3i& t) { return large[t[0]] != 0; });
   return kept;
 }
 

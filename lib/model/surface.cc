@@ -11,6 +11,7 @@
 #include "splitfusion/lib/geometry/mesh_pieces.h"
 #include "splitfusion/lib/model/canonical_places.h"
 #include "splitfusion/lib/model/observe_surface.h"
+#include "splitfusion/lib/tsdf/forget_voxels.h"
 
 namespace splitfusion {
 namespace {
@@ -135,27 +136,53 @@ void Surface::PlaceGraph(const LiveView& live) {
   mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
 }
 
-void Surface::Fuse(const LiveView& live) {
+int Surface::Fuse(const LiveView& live) {
   DepthObservation observation = ObserveSurface(live, id_);
-  if (kind_ == SurfaceKind::kRigid) {
-    observation.others_refute = true;
-    const Rigid3d camera_from_canonical = MeanRigidMotion(graph_);
-    AllocateBand(observation, camera_from_canonical, &volume_);
-    IntegrateRigid(observation, camera_from_canonical, &volume_);
-  } else {
-    FuseWarped(live, &observation);
-  }
+  if (kind_ == SurfaceKind::kNonRigid) return FuseWarped(live, &observation);
+  observation.others_refute = true;
+  const Rigid3d camera_from_canonical = MeanRigidMotion(graph_);
+  AllocateBand(observation, camera_from_canonical, &volume_);
+  IntegrateRigid(observation, camera_from_canonical, &volume_);
+  return 0;
 }
 
-void Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
+int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
+  std::vector<Eigen::Vector3f> warped = WarpedVertices();
+  refuted_.Look(live, id_, warped, mesh_skinning(), graph_.size(),
+                options_.tsdf.truncation);
+  const int forgotten = ForgetRefuted();
+  if (forgotten > 0) warped = WarpedVertices();
   const CanonicalPlaces found = FindCanonicalPlaces(
-      live, id_, graph_, mesh_.vertices, WarpedVertices(),
+      live, id_, graph_, mesh_.vertices, warped,
       {kModelledVoxels * options_.tsdf.voxel_size, options_.growth_reach});
   AllocateAround(PlacesOfSurface(found), options_.tsdf.truncation, &volume_);
   observation->places = found.points;
   observation->place_tolerance = PlaceTolerance(options_.tsdf);
   integrator_.Integrate(*observation, *index_, WarpField(graph_),
-                        options_.growth_reach, &volume_);
+                        options_.growth_reach, &volume_,
+                        refuted_.Nodes(1, graph_options_.refuted_frames));
+  return forgotten;
+}
+
+int Surface::ForgetRefuted() {
+  if (graph_options_.refuted_frames == 0) return 0;
+  const std::vector<char> nodes = refuted_.Nodes(graph_options_.refuted_frames);
+  const auto count =
+      static_cast<int>(std::count(nodes.begin(), nodes.end(), true));
+  if (count == 0 || count < graph_options_.refuted_share * graph_.size()) {
+    return 0;
+  }
+  if (!history_.frames.empty()) {
+    TriangleMesh shown = mesh_;
+    shown.triangles = TrianglesOfLargePieces(mesh_, options_.min_piece_area);
+    SurfaceModel part =
+        PartOf(shown, mesh_skinning_.supports(), graph_, history_, nodes);
+    if (!part.history.frames.empty()) retired_.push_back(std::move(part));
+  }
+  ForgetVoxels(graph_, *index_, nodes, &volume_);
+  refuted_.Forget(nodes);
+  UpdateMesh();
+  return count;
 }
 
 void Surface::FinishMesh() {
@@ -176,6 +203,7 @@ void Surface::UpdateGraphOverMesh() {
       UpdateGraph(mesh_, graph_options_, *index_, mesh_skinning_, &graph_,
                   &graph_record_, &history_);
   if (change.none()) return;
+  refuted_.Follow(change);
   auto updated = std::make_unique<SkinningIndex>(
       graph_, graph_options_.neighbors_per_point);
   const SkinningChange skinning_change(*index_, *updated, graph_, change);

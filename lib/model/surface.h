@@ -12,6 +12,7 @@
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/model/refuted_parts.h"
 #include "splitfusion/lib/model/surface_model.h"
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/tsdf/mesh_extractor.h"
@@ -62,8 +63,12 @@ class Surface {
   /// there is anything to begin with; otherwise nothing changes.
   bool Reanchor(const LiveView& live);
 
-  /// Fuses the live pixels of this surface under the current motions.
-  void Fuse(const LiveView& live);
+  /// Fuses the live pixels of this surface under the current motions, which
+  /// were just tracked. Parts of a deforming one that live depth refutes now
+  /// are left alone, and forgotten after GraphOptions::refuted_frames frames on
+  /// end; the model for the frames so far keeps them. Returns the number of
+  /// nodes whose parts were forgotten.
+  int Fuse(const LiveView& live);
 
   /// Extracts the canonical mesh; its graph follows it.
   void UpdateMesh();
@@ -122,7 +127,7 @@ class Surface {
   }
   /// Motions of all frames since its model began.
   const MotionHistory& history() const { return history_; }
-  /// Mesh, graph and motions of all its models.
+  /// Mesh, graph and motions of all its models and refuted parts.
   SurfaceModel Model() const;
 
   /// Saves or restores all that later frames depend on, see
@@ -134,7 +139,8 @@ class Surface {
 
  private:
   void PlaceGraph(const LiveView& live);
-  void FuseWarped(const LiveView& live, DepthObservation* observation);
+  int FuseWarped(const LiveView& live, DepthObservation* observation);
+  int ForgetRefuted();
   void UpdateGraphOverMesh();
   /// Makes what Serialize() leaves out.
   void RestoreCaches();
@@ -155,7 +161,9 @@ class Surface {
   TriangleMesh mesh_;
   MeshSkinning mesh_skinning_;
   MotionHistory history_;
-  std::vector<SurfaceModel> retired_;  // What it was before Reanchor().
+  RefutedParts refuted_;
+  // What it was before Reanchor(), and parts that were refuted.
+  std::vector<SurfaceModel> retired_;
 };
 
 }  // namespace splitfusion

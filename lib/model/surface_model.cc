@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 namespace splitfusion {
 namespace {
@@ -45,7 +46,8 @@ void AppendGraph(const SurfaceModel& model, double shift,
   const DeformationGraph& graph = model.graph;
   const int first_node = joined->size();
   const int first_frame = model.history.frames.front().frame;
-  joined->models.push_back({first_node, first_frame});
+  joined->parts.push_back(
+      {first_node, first_frame, model.history.frames.back().frame + 1});
   joined->node_spacing = std::max(joined->node_spacing, graph.node_spacing);
   for (int i = 0; i < graph.size(); ++i) {
     joined->positions.push_back(graph.positions[i] +
@@ -71,7 +73,142 @@ std::vector<NodeMotion> MotionsAt(const SurfaceModel& model, int frame,
   return motions;
 }
 
+/// All frames of some models, and whether the surface was tracked in them.
+std::map<int, bool> FramesOf(const std::vector<const SurfaceModel*>& models) {
+  std::map<int, bool> frames;
+  for (const SurfaceModel* model : models) {
+    for (const FrameMotions& frame : model->history.frames) {
+      frames[frame.frame] = frame.tracked;
+    }
+  }
+  return frames;
+}
+
+/// The triangles that have a vertex whose nearest node is one of `of_nodes`,
+/// and those beside them; their vertices; the nearest nodes of these, and all
+/// nodes within two edges of them, among which SkinningIndex chooses.
+struct PartMembers {
+  PartMembers(const TriangleMesh& mesh,
+              const std::vector<SkinningSupport>& supports,
+              const DeformationGraph& graph, const std::vector<char>& of_nodes)
+      : vertices(mesh.vertices.size()), nearest(graph.size(), false) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      vertices[i] = of_nodes[supports[i].nearest];
+    }
+    vertices = VerticesBeside(mesh, vertices);
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      if (vertices[t[0]] || vertices[t[1]] || vertices[t[2]]) {
+        triangles.push_back(t);
+      }
+    }
+    vertices = VerticesBeside(mesh, vertices);
+    for (const Eigen::Vector3i& t : triangles) {
+      for (int k = 0; k < 3; ++k) nearest[supports[t[k]].nearest] = true;
+    }
+    nodes = nearest;
+    for (int edges = 0; edges < 2; ++edges) {
+      const std::vector<char> reached = nodes;
+      for (int i = 0; i < graph.size(); ++i) {
+        if (reached[i] == 0) continue;
+        for (const int j : graph.neighbors[i]) nodes[j] = true;
+      }
+    }
+  }
+
+  /// The vertices of all triangles that have one of `some`.
+  static std::vector<char> VerticesBeside(const TriangleMesh& mesh,
+                                          const std::vector<char>& some) {
+    std::vector<char> beside(some.size(), false);
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      if (!some[t[0]] && !some[t[1]] && !some[t[2]]) continue;
+      for (int k = 0; k < 3; ++k) beside[t[k]] = true;
+    }
+    return beside;
+  }
+
+  std::vector<Eigen::Vector3i> triangles;
+  std::vector<char> vertices;  // Of every one whether it is a member.
+  std::vector<char> nearest;   // As `vertices`, of nodes.
+  std::vector<char> nodes;     // As `nearest`.
+};
+
+/// The first frame in which anything was seen that some nodes carry; of all
+/// frames, where that is not recorded.
+int FirstSight(const DeformationGraph& graph, const std::vector<char>& nodes) {
+  int first = std::numeric_limits<int>::max();
+  for (int i = 0; i < graph.size(); ++i) {
+    if (nodes[i] == 0) continue;
+    const bool known = i < static_cast<int>(graph.first_seen.size());
+    first = std::min(first, known ? graph.first_seen[i] : 0);
+  }
+  return first;
+}
+
+/// Numbers of the members among themselves; -1: no member.
+std::vector<int> Numbers(const std::vector<char>& members) {
+  std::vector<int> numbers(members.size(), -1);
+  int count = 0;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    if (members[i] != 0) numbers[i] = count++;
+  }
+  return numbers;
+}
+
+/// The values of the members; the last ones may have none.
+template <typename T>
+std::vector<T> Chosen(const std::vector<T>& values,
+                      const std::vector<char>& members) {
+  std::vector<T> chosen;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (members[i] != 0) chosen.push_back(values[i]);
+  }
+  return chosen;
+}
+
+DeformationGraph GraphOf(const DeformationGraph& graph,
+                         const std::vector<char>& members) {
+  DeformationGraph part;
+  part.positions = Chosen(graph.positions, members);
+  part.motions = Chosen(graph.motions, members);
+  part.neighbors = Chosen(graph.neighbors, members);
+  part.first_seen = Chosen(graph.first_seen, members);
+  part.node_spacing = graph.node_spacing;
+  const std::vector<int> numbers = Numbers(members);
+  for (std::vector<int>& edges : part.neighbors) {
+    std::vector<int> kept;
+    for (const int j : edges) {
+      if (numbers[j] >= 0) kept.push_back(numbers[j]);
+    }
+    edges = std::move(kept);
+  }
+  return part;
+}
+
 }  // namespace
+
+SurfaceModel PartOf(const TriangleMesh& mesh,
+                    const std::vector<SkinningSupport>& supports,
+                    const DeformationGraph& graph, const MotionHistory& history,
+                    const std::vector<char>& nodes) {
+  const PartMembers members(mesh, supports, graph, nodes);
+  SurfaceModel part;
+  part.mesh.vertices = Chosen(mesh.vertices, members.vertices);
+  part.mesh.normals = Chosen(mesh.normals, members.vertices);
+  part.mesh.colors = Chosen(mesh.colors, members.vertices);
+  const std::vector<int> numbers = Numbers(members.vertices);
+  for (const Eigen::Vector3i& t : members.triangles) {
+    part.mesh.triangles.emplace_back(numbers[t[0]], numbers[t[1]],
+                                     numbers[t[2]]);
+  }
+  part.graph = GraphOf(graph, members.nodes);
+  const int first = FirstSight(graph, members.nearest);
+  for (const FrameMotions& frame : history.frames) {
+    if (frame.frame < first) continue;
+    part.history.frames.push_back(
+        {frame.frame, frame.tracked, Chosen(frame.motions, members.nodes)});
+  }
+  return part;
+}
 
 SurfaceModel JoinModels(const std::vector<const SurfaceModel*>& models) {
   if (models.size() == 1) return *models.front();
@@ -85,15 +222,14 @@ SurfaceModel JoinModels(const std::vector<const SurfaceModel*>& models) {
     AppendMesh(model->mesh, shifts.back(), &joined.mesh);
     AppendGraph(*model, shifts.back(), &joined.graph);
   }
-  for (const SurfaceModel* model : models) {
-    for (const FrameMotions& frame : model->history.frames) {
-      FrameMotions all{frame.frame, frame.tracked, {}};
-      for (std::size_t i = 0; i < models.size(); ++i) {
-        const auto motions = MotionsAt(*models[i], frame.frame, shifts[i]);
-        all.motions.insert(all.motions.end(), motions.begin(), motions.end());
-      }
-      joined.history.frames.push_back(std::move(all));
+  joined.graph.parts.back().end_frame = ModelPart::kNoEnd;
+  for (const auto& [index, tracked] : FramesOf(models)) {
+    FrameMotions all{index, tracked, {}};
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const auto motions = MotionsAt(*models[i], index, shifts[i]);
+      all.motions.insert(all.motions.end(), motions.begin(), motions.end());
     }
+    joined.history.frames.push_back(std::move(all));
   }
   joined.graph.motions = joined.history.frames.back().motions;
   return joined;

@@ -9,8 +9,8 @@ template <typename Archive>
 void Surface::Serialize(Archive* archive) {
   archive->Section("surface");
   ExpectSame(archive, "id", id_);
-  (*archive)(label_, inactive_, volume_, graph_, graph_record_, mesh_,
-             history_, retired_);
+  (*archive)(label_, inactive_, volume_, graph_, graph_record_, mesh_, history_,
+             refuted_, retired_);
   if constexpr (Archive::kReads) {
     if (graph_.size() == 0) archive->Fail("a graph without nodes");
     RestoreCaches();

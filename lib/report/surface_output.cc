@@ -22,10 +22,8 @@ TriangleMesh WarpMesh(const SurfaceModel& model,
     mesh.vertices[i] = warp.WarpPoint(skinning[i], mesh.vertices[i]);
     mesh.normals[i] = warp.WarpNormal(skinning[i], mesh.normals[i]);
   }
-  if (!whole) {
-    mesh.triangles =
-        SeenTriangles(model.mesh, skinning, model.graph, motions.frame);
-  }
+  if (whole) graph.first_seen.clear();
+  mesh.triangles = SeenTriangles(model.mesh, skinning, graph, motions.frame);
   return mesh;
 }
 

@@ -79,6 +79,11 @@ SkinnedPoint SkinPoint(const openvdb::Coord& origin, float voxel,
 /// The middle of a block, which is a point of its own.
 constexpr int kCenter = kLatticePoints / 2;
 
+/// The node nearest to the middle of an attached block.
+int MiddleNode(const LeafLattice& lattice) {
+  return lattice.own[LatticeIndex(kCenter).own()].support.nearest;
+}
+
 /// Skins the points that a block owns.
 void SkinOwn(const openvdb::Coord& origin, float voxel, float reach,
              const SkinningIndex& index, LeafLattice* lattice) {
@@ -254,9 +259,7 @@ void WarpedIntegrator::FollowGraph(const SkinningIndex& index,
   std::deque<LeafLattice>& lattices = cache_->lattices;
   tbb::parallel_for(std::size_t{0}, lattices.size(), [&](std::size_t i) {
     LeafLattice& lattice = lattices[i];
-    const SkinningSupport& center =
-        lattice.own[LatticeIndex(kCenter).own()].support;
-    if (lattice.attached && change.KeepsNode(center.nearest)) {
+    if (lattice.attached && change.KeepsNode(MiddleNode(lattice))) {
       FollowPoints(leaves[i].origin, voxel, index, change, &lattice.own);
       FollowPoints(leaves[i].origin, voxel, index, change, &lattice.border);
     } else {
@@ -269,7 +272,8 @@ void WarpedIntegrator::FollowGraph(const SkinningIndex& index,
 void WarpedIntegrator::Integrate(const DepthObservation& observation,
                                  const SkinningIndex& index,
                                  const WarpField& warp, double reach,
-                                 TsdfVolume* volume) {
+                                 TsdfVolume* volume,
+                                 const std::vector<char>& astray) {
   CheckObservation(observation, volume->options());
   TsdfVolume::Grids& grids = volume->grids();
   const std::vector<internal::LeafBuffers>& leaves = grids.leaves;
@@ -296,7 +300,10 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
     own[i] = WarpOwn(leaves[i].origin, voxel, lattices[i], warp);
   });
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
-    if (!lattices[i].attached) return;
+    if (!lattices[i].attached ||
+        (!astray.empty() && astray[MiddleNode(lattices[i])] != 0)) {
+      return;
+    }
     const WarpedLattice warped = GatherLattice(
         leaves[i].origin, voxel, owners[i], own, lattices[i], warp);
     if (IntegrateLeaf(observation, image, voxel, warped, leaves[i])) {

@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_TSDF_WARPED_INTEGRATION_H_
 
 #include <memory>
+#include <vector>
 
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/deformation/skinning_change.h"
@@ -33,12 +34,15 @@ class WarpedIntegrator {
                    const TsdfVolume& volume);
 
   /// Fuses one observation. Blocks farther than `reach` (metres) from every
-  /// node are left alone.
+  /// node are left alone, and those around nodes that are `astray` (of every
+  /// node whether it is; empty: none): where the warp is wrong an observation
+  /// tells nothing of the shape.
   ///
   /// @throw InputError if an image is missing or not of the camera's size.
   void Integrate(const DepthObservation& observation,
                  const SkinningIndex& index, const WarpField& warp,
-                 double reach, TsdfVolume* volume);
+                 double reach, TsdfVolume* volume,
+                 const std::vector<char>& astray = {});
 
  private:
   struct Cache;

@@ -8,14 +8,18 @@ namespace {
 
 /// Whether the node nearest to a point (the one with the greatest weight of
 /// Eq. 3), or another one no farther than the node spacing, had been seen. Such
-/// a point had a node near enough, and the graph did not grow over it.
+/// a point had a node near enough, and the graph did not grow over it. `known`:
+/// whether it is recorded when nodes were seen first; else all were.
 bool IsSeen(const Eigen::Vector3f& point, const Skinning& skinning,
-            const DeformationGraph& graph, const NodeRange& in_use, int frame) {
+            const DeformationGraph& graph, bool known, int frame) {
   const auto begin = skinning.weights.begin();
   const auto nearest = std::max_element(begin, begin + skinning.count) - begin;
   for (int k = 0; k < skinning.count; ++k) {
     const int node = skinning.nodes[k];
-    if (!in_use.Contains(node) || graph.first_seen[node] > frame) continue;
+    if (!graph.IsInUse(node, frame) ||
+        (known && graph.first_seen[node] > frame)) {
+      continue;
+    }
     const double distance =
         (graph.positions[node] - point.cast<double>()).norm();
     if (k == nearest || distance < graph.node_spacing) return true;
@@ -29,15 +33,14 @@ std::vector<Eigen::Vector3i> SeenTriangles(
     const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
     const DeformationGraph& graph, int frame) {
   const std::vector<int>& first = graph.first_seen;
-  const NodeRange in_use = graph.NodesInUse(frame);
-  const bool all_in_use = in_use.end - in_use.begin == graph.size();
-  if (static_cast<int>(first.size()) < graph.size() ||
-      (all_in_use && *std::max_element(first.begin(), first.end()) <= frame)) {
+  const bool known = static_cast<int>(first.size()) == graph.size();
+  if (graph.parts.empty() &&
+      (!known || *std::max_element(first.begin(), first.end()) <= frame)) {
     return mesh.triangles;
   }
   std::vector<char> seen(mesh.vertices.size());
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    seen[i] = IsSeen(mesh.vertices[i], skinning[i], graph, in_use, frame);
+    seen[i] = IsSeen(mesh.vertices[i], skinning[i], graph, known, frame);
   }
   std::vector<Eigen::Vector3i> triangles;
   std::copy_if(mesh.triangles.begin(), mesh.triangles.end(),

@@ -12,7 +12,8 @@ namespace splitfusion {
 
 /// The part of a surface's final mesh that had been seen by a frame: triangles
 /// whose corners lie near nodes that had been (DeformationGraph::first_seen),
-/// wherever they are by now; all triangles where that is not recorded.
+/// wherever they are by now, and all where that is not recorded. What
+/// nodes carry that are not in use in the frame is left out.
 ///
 /// A node is near as far as the node spacing: so far the graph did not grow. At
 /// GraphOptions::max_nodes it does not grow until nodes are forgotten, and what

@@ -53,25 +53,32 @@ TEST(Graph, KeepsFirstSights) {
   EXPECT_EQ(read.first_seen, graph.first_seen);
 }
 
-TEST(Graph, KeepsWhereModelsBegin) {
+TEST(Graph, KeepsWhereItsPartsBeginAndEnd) {
   const TemporaryFolder folder;
   DeformationGraph graph = Triangle();
-  graph.models = {{0, 2}, {1, 7}};
+  graph.parts = {{0, 2, 7}, {1, 7}};
   const std::string path = folder / "graph.json";
   WriteGraph(path, graph, 4);
   const DeformationGraph read = ReadGraph(path, nullptr);
-  ASSERT_EQ(read.models.size(), 2u);
-  EXPECT_EQ(read.models[1].node, 1);
-  EXPECT_EQ(read.models[1].frame, 7);
-  for (const char* wrong : {"7", "[3]", "[[0]]", "[[1, 2]]", "[[0, 2], [0, 3]]",
-                            "[[0, 2], [1, 2]]", "[[0, 0], [9, 1]]",
-                            "[[0, -1]]"}) {
+  ASSERT_EQ(read.parts.size(), 2u);
+  EXPECT_EQ(read.parts[0].end_frame, 7);
+  EXPECT_EQ(read.parts[1].node, 1);
+  EXPECT_EQ(read.parts[1].first_frame, 7);
+  EXPECT_EQ(read.parts[1].end_frame, ModelPart::kNoEnd);
+  for (const char* wrong :
+       {"7", "[3]", "[[0, 2]]", "[[1, 2, null]]", "[[0, 2, 3], [0, 3, null]]",
+        "[[0, 2, 2]]", "[[0, 0, null], [9, 1, null]]", "[[0, -1, null]]",
+        "[[0, 1, \"end\"]]"}) {
     folder.Write("graph.json",
                  R"({"node_spacing": 1, "positions": [[1, 2, 3], [1, 2, 4]],
-                     "edges": [[], []], "models": )" +
+                     "edges": [[], []], "parts": )" +
                      std::string(wrong) + "}");
-    EXPECT_THAT(GraphMessage(path), HasSubstr("field 'models'")) << wrong;
+    EXPECT_THAT(GraphMessage(path), HasSubstr("field 'parts'")) << wrong;
   }
+  folder.Write("graph.json",
+               R"({"node_spacing": 1, "positions": [[1, 2, 3], [1, 2, 4]],
+                   "edges": [[], []], "models": [[0, 0], [1, 4]]})");
+  EXPECT_THAT(GraphMessage(path), HasSubstr("field 'models': expected a run"));
 }
 
 TEST(Graph, MayLackFirstSights) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/visibility/seen_triangles.h"
 #include "support/sample_graphs.h"
@@ -11,9 +14,9 @@ namespace splitfusion {
 namespace {
 
 /// A plate that moves along y by a centimetre a frame, in frames first..last.
-SurfaceModel MovingPlate(int first, int last) {
+SurfaceModel MovingPlate(int first, int last, double width = 0.3) {
   SurfaceModel model;
-  model.mesh = PlateMesh(0.3, 0.3, 0.02, 1);
+  model.mesh = PlateMesh(width, 0.3, 0.02, 1);
   model.mesh.normals = ComputeVertexNormals(model.mesh);
   model.graph = CoverWithNodes(model.mesh, 0.05);
   model.graph.first_seen.assign(model.graph.size(), first);
@@ -30,7 +33,7 @@ SurfaceModel MovingPlate(int first, int last) {
 TEST(JoinModels, OneModelStaysAsItIs) {
   const SurfaceModel plate = MovingPlate(2, 4);
   const SurfaceModel joined = JoinModels({&plate});
-  EXPECT_TRUE(joined.graph.models.empty());
+  EXPECT_TRUE(joined.graph.parts.empty());
   EXPECT_EQ(joined.mesh.vertices, plate.mesh.vertices);
   EXPECT_EQ(joined.history.frames.size(), 3u);
 }
@@ -41,9 +44,10 @@ TEST(JoinModels, ShowsEachModelInItsFramesWhereItWas) {
   const int nodes = first.graph.size();
   const std::size_t vertices = first.mesh.vertices.size();
   ASSERT_EQ(joined.graph.size(), 2 * nodes);
-  ASSERT_EQ(joined.graph.models.size(), 2u);
-  EXPECT_EQ(joined.graph.models[1].node, nodes);
-  EXPECT_EQ(joined.graph.models[1].frame, 5);
+  ASSERT_EQ(joined.graph.parts.size(), 2u);
+  EXPECT_EQ(joined.graph.parts[0].end_frame, 5);
+  EXPECT_EQ(joined.graph.parts[1].node, nodes);
+  EXPECT_EQ(joined.graph.parts[1].first_frame, 5);
   const std::vector<Skinning> skinning =
       SkinningIndex(joined.graph, 6).Skin(joined.mesh.vertices);
   ASSERT_EQ(joined.history.frames.size(), 8u);
@@ -79,17 +83,76 @@ TEST(JoinModels, EdgesStayWithinTheirModel) {
   }
 }
 
-TEST(NodesInUse, AreThoseOfTheLatestModelThatHasBegun) {
+TEST(JoinModels, ShowsARefutedPartBesideTheRestUntilItsEnd) {
+  const SurfaceModel part = MovingPlate(2, 4), rest = MovingPlate(2, 9);
+  const SurfaceModel joined = JoinModels({&part, &rest});
+  const std::vector<Skinning> skinning =
+      SkinningIndex(joined.graph, 6).Skin(joined.mesh.vertices);
+  ASSERT_EQ(joined.history.frames.size(), 8u);
+  for (const FrameMotions& frame : joined.history.frames) {
+    EXPECT_EQ(frame.motions.size(), joined.graph.positions.size());
+    EXPECT_EQ(
+        SeenTriangles(joined.mesh, skinning, joined.graph, frame.frame).size(),
+        (frame.frame < 5 ? 2 : 1) * rest.mesh.triangles.size())
+        << frame.frame;
+  }
+}
+
+TEST(PartOf, IsCarriedAsItWas) {
+  SurfaceModel plate = MovingPlate(2, 4, 0.9);
+  for (int i = 0; i < plate.graph.size(); ++i) {
+    plate.graph.motions[i].translation.z() = 0.1 * plate.graph.positions[i].x();
+  }
+  const SkinningIndex index(plate.graph, 6);
+  const MeshSkinning skinning(index, plate.mesh.vertices);
+  std::vector<char> nodes(plate.graph.size());
+  for (int i = 0; i < plate.graph.size(); ++i) {
+    nodes[i] = plate.graph.positions[i].x() > 0.7;
+  }
+  const SurfaceModel part = PartOf(plate.mesh, skinning.supports(), plate.graph,
+                                   plate.history, nodes);
+  ASSERT_GT(part.mesh.triangles.size(), 10u);
+  EXPECT_LT(part.mesh.triangles.size(), plate.mesh.triangles.size() / 2);
+  EXPECT_EQ(part.mesh.normals.size(), part.mesh.vertices.size());
+  EXPECT_LT(part.graph.size(), plate.graph.size());
+  ASSERT_EQ(part.history.frames.size(), 3u);
+  EXPECT_EQ(part.history.frames[0].motions.size(), part.graph.motions.size());
+  const WarpField warp(part.graph), whole(plate.graph);
+  const SkinningIndex part_index(part.graph, 6);
+  for (const Eigen::Vector3f& v : part.mesh.vertices) {
+    EXPECT_LT((warp.WarpPoint(part_index.Skin(v), v) -
+               whole.WarpPoint(index.Skin(v), v))
+                  .norm(),
+              1e-6f);
+  }
+}
+
+TEST(PartOf, NoNodesAreNoPart) {
+  const SurfaceModel plate = MovingPlate(2, 4);
+  const MeshSkinning skinning(SkinningIndex(plate.graph, 6),
+                              plate.mesh.vertices);
+  const SurfaceModel part =
+      PartOf(plate.mesh, skinning.supports(), plate.graph, plate.history,
+             std::vector<char>(plate.graph.size(), false));
+  EXPECT_TRUE(part.mesh.triangles.empty());
+  EXPECT_EQ(part.graph.size(), 0);
+}
+
+TEST(IsInUse, IsFromTheFirstFrameOfAPartUntilItsEnd) {
   DeformationGraph graph;
   graph.positions.resize(10);
-  EXPECT_EQ(graph.NodesInUse(7).end, 10);
-  graph.models = {{0, 2}, {4, 5}, {7, 9}};
-  for (const auto& [frame, begin, end] :
-       {std::array<int, 3>{0, 0, 4}, {4, 0, 4}, {5, 4, 7}, {8, 4, 7},
-        {9, 7, 10}, {50, 7, 10}}) {
-    EXPECT_EQ(graph.NodesInUse(frame).begin, begin) << frame;
-    EXPECT_EQ(graph.NodesInUse(frame).end, end) << frame;
-  }
+  EXPECT_TRUE(graph.IsInUse(9, 7));
+  graph.parts = {{0, 2, 9}, {4, 2, 5}, {7, 5}};
+  const auto in_use = [&](int frame) {
+    std::string text;
+    for (int i = 0; i < graph.size(); ++i)
+      text += graph.IsInUse(i, frame) ? 'x' : '.';
+    return text;
+  };
+  EXPECT_EQ(in_use(1), "..........");
+  EXPECT_EQ(in_use(2), "xxxxxxx...");
+  EXPECT_EQ(in_use(5), "xxxx...xxx");
+  EXPECT_EQ(in_use(9), ".......xxx");
 }
 
 }  // namespace

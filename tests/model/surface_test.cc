@@ -104,11 +104,79 @@ TEST(Surface, BeginsAnewUnderItsIdAndKeepsWhatItWas) {
   box.RecordMotions(5, true);
   box.FinishMesh();
   const SurfaceModel model = box.Model();
-  ASSERT_EQ(model.graph.models.size(), 2u);
-  EXPECT_EQ(model.graph.models[1].node, nodes);
-  EXPECT_EQ(model.graph.models[1].frame, 5);
+  ASSERT_EQ(model.graph.parts.size(), 2u);
+  EXPECT_EQ(model.graph.parts[0].end_frame, 5);
+  EXPECT_EQ(model.graph.parts[1].node, nodes);
+  EXPECT_EQ(model.graph.parts[1].first_frame, 5);
   EXPECT_EQ(model.history.frames.size(), 2u);
   EXPECT_EQ(model.graph.size(), nodes + box.graph().size());
+}
+
+TEST(Surface, ForgetsWhatHangsInFreeSpaceButForTheFramesSoFar) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+  const auto width = [](const TriangleMesh& mesh) {
+    float low = 9, high = -9;
+    for (const auto& v : mesh.vertices) {
+      low = std::min(low, v.x());
+      high = std::max(high, v.x());
+    }
+    return high - low;
+  };
+  const auto fuse = [&](const LiveView& live, int frame) {
+    const int forgotten = box.Fuse(live);
+    box.UpdateMesh();
+    box.RecordMotions(frame, true);
+    return forgotten;
+  };
+  for (int frame = 4; frame < 20; ++frame) {
+    EXPECT_EQ(fuse(ViewWithBox(kWhole), frame), 0);
+  }
+  const int nodes = box.graph().size();
+  const float whole = width(box.mesh());
+  // Its right half is gone, the wall is seen there.
+  EXPECT_EQ(fuse(ViewWithBox(kHalf), 20), 0);
+  EXPECT_EQ(fuse(ViewWithBox(kHalf), 21), 0);
+  EXPECT_GT(width(box.mesh()), 0.9f * whole);
+  EXPECT_GT(fuse(ViewWithBox(kHalf), 22), nodes / 4);
+  EXPECT_NEAR(width(box.mesh()), whole / 2, 0.1f * whole);
+  EXPECT_LT(box.graph().size(), 0.8 * nodes);
+  EXPECT_EQ(fuse(ViewWithBox(kHalf), 23), 0);
+  const SurfaceModel model = box.Model();
+  ASSERT_EQ(model.graph.parts.size(), 2u);
+  EXPECT_EQ(model.graph.parts[0].first_frame, 4);
+  EXPECT_EQ(model.graph.parts[0].end_frame, 22);
+  EXPECT_EQ(model.graph.parts[1].first_frame, 4);
+  EXPECT_EQ(model.graph.parts[1].end_frame, ModelPart::kNoEnd);
+  EXPECT_EQ(model.history.frames.size(), 20u);
+}
+
+TEST(Surface, ZeroFramesForgetNoParts) {
+  GraphOptions graph;
+  graph.refuted_frames = 0;
+  Surface box(1, "box", SurfaceKind::kNonRigid, 4, SurfaceOptions(), graph);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+  for (int frame = 4; frame < 12; ++frame) {
+    EXPECT_EQ(box.Fuse(ViewWithBox(frame < 8 ? kWhole : kHalf)), 0);
+    box.UpdateMesh();
+    box.RecordMotions(frame, true);
+  }
+  EXPECT_TRUE(box.Model().graph.parts.empty());
+}
+
+TEST(Surface, KeepsWhatIsHiddenOrTakenForAnother) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+  box.RecordMotions(4, true);
+  const cv::Rect right(80, 40, 30, 40);
+  for (int frame = 5; frame < 12; ++frame) {
+    LiveView live = ViewWithBox(kWhole);
+    live.labels(right).setTo(2);
+    if (frame % 2 == 0) live.depth(right).setTo(0.6f);
+    EXPECT_EQ(box.Fuse(live), 0);
+    box.UpdateMesh();
+    box.RecordMotions(frame, true);
+  }
 }
 
 TEST(Surface, AGraphOfFewNodesNeedsNoMoreBlocks) {

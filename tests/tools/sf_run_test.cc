@@ -49,8 +49,8 @@ TEST_F(SfRun, WarpedMeshesHoldWhatWasSeenByThenOrAll) {
   ASSERT_EQ(Run("seen", flags).exit_code, 0);
   ASSERT_EQ(Run("whole", flags + "--warped_whole").exit_code, 0);
   EXPECT_GT(missing("seen", "000000"), 0u);
-  EXPECT_EQ(missing("seen", "000015"), 0u);
-  EXPECT_EQ(missing("whole", "000000"), 0u);
+  EXPECT_LT(missing("whole", "000000"), missing("seen", "000000"));
+  EXPECT_EQ(missing("whole", "000015"), missing("seen", "000015"));
 }
 
 TEST_F(SfRun, WritesWhatTheContractNames) {

@@ -193,6 +193,34 @@ TEST_F(WarpedIntegration, SkinningFollowsAGraphThatForgetsNodes) {
   EXPECT_EQ(mesh.vertices, ExtractMesh(control, 0.5).vertices);
 }
 
+TEST_F(WarpedIntegration, LeavesWhatIsAstrayAlone) {
+  for (int i = 0; i < 3; ++i) Integrate(CenteredPlate());
+  const auto count_right = [&] {
+    int count = 0;
+    for (const auto& v : ExtractMesh(volume_, 0.5).vertices) {
+      count += v.x() > 0.08f;
+    }
+    return count;
+  };
+  const int before = count_right();
+  ASSERT_GT(before, 200);
+  // A wall far behind the plate, which carves it.
+  const DepthObservation wall = ObserveAll(Camera(), WallDepth(Camera(), 2));
+  std::vector<char> right(graph_.size());
+  for (int i = 0; i < graph_.size(); ++i) {
+    right[i] = graph_.positions[i].x() > 0;
+  }
+  for (int i = 0; i < 9; ++i) {
+    integrator_.Integrate(wall, index_, WarpField(graph_), kReach, &volume_,
+                          right);
+  }
+  EXPECT_EQ(count_right(), before);
+  for (int i = 0; i < 9; ++i) {
+    integrator_.Integrate(wall, index_, WarpField(graph_), kReach, &volume_);
+  }
+  EXPECT_EQ(count_right(), 0);
+}
+
 TEST_F(WarpedIntegration, WhatBelongsElsewhereIsNotCopied) {
   // Both halves of the graph lie upon the left half of the plate.
   for (int i = 0; i < graph_.size(); ++i) {
