@@ -31,11 +31,15 @@ int AnimatedSurface::FirstFrame() const {
 
 bool AnimatedSurface::BeginsIn(int frame) const {
   const std::vector<ModelPart>& parts = surface_.graph.parts;
+  const auto begins = [&](const ModelPart& part) {
+    return part.first_frame == frame;
+  };
+  const auto goes_on = [&](const ModelPart& part) {
+    return part.first_frame < frame && frame < part.end_frame;
+  };
   return FirstFrame() == frame ||
-         std::any_of(parts.begin(), parts.end(),
-                     [frame](const ModelPart& part) {
-                       return part.first_frame == frame;
-                     });
+         (std::any_of(parts.begin(), parts.end(), begins) &&
+          std::none_of(parts.begin(), parts.end(), goes_on));
 }
 
 bool AnimatedSurface::EndsBetween(int before, int frame) const {

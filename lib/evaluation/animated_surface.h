@@ -26,7 +26,8 @@ class AnimatedSurface {
   bool Tracked(int frame) const;
   /// First frame with motions; -1 if there is none.
   int FirstFrame() const;
-  /// Whether it, or a part of its model, begins in a frame.
+  /// Whether it, or a new model of it, begins in a frame: no part of what was
+  /// there before goes on.
   bool BeginsIn(int frame) const;
   /// Whether a part of its model is in use in `frame` no more, but still was
   /// in `before`.

@@ -60,10 +60,10 @@ class Follower {
     return Attach(frame, [](const AnimatedSurface&) { return true; });
   }
 
-  /// Attaches what is not attached any more to the surfaces of which a part
-  /// begins, or has ended since the frame `before`. Where one begins it also
-  /// takes over points of the background that lie on it: they were not yet told
-  /// apart from it.
+  /// Attaches what is not attached to the surfaces that begin, or of which a
+  /// part has ended since the frame `before`. One that begins also takes over
+  /// points of the background that lie on it: they were not yet told apart from
+  /// it.
   void Reattach(const RecordedFrame& before, const RecordedFrame& frame) {
     Attach(frame, [&](const AnimatedSurface& surface) {
       return surface.BeginsIn(frame.index) ||

@@ -69,8 +69,9 @@ void RefutedParts::Look(const LiveView& live, int surface,
 
 std::vector<char> RefutedParts::Nodes(int frames, int end) const {
   std::vector<char> nodes(frames_.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
     nodes[i] = frames_[i] >= frames && frames_[i] < end;
+  }
   return nodes;
 }
 

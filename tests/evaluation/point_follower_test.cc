@@ -130,6 +130,23 @@ AnimatedSurface PlateSurface(int id, float z) {
   return AnimatedSurface(surface);
 }
 
+TEST(AnimatedSurface, BeginsAnewWhereNothingGoesOn) {
+  RecordedSurface surface = PlateSurface(1, 1).recorded();
+  surface.graph.positions.resize(5);
+  surface.graph.motions.resize(5);
+  surface.graph.neighbors.resize(5);
+  surface.motions.frames[0].motions.resize(5);
+  // Two refuted parts and the rest of a model, and the one that replaced it.
+  surface.graph.parts = {{0, 0, 4}, {1, 6, 9}, {2, 0, 20}, {3, 20}};
+  const AnimatedSurface plate(surface);
+  EXPECT_TRUE(plate.BeginsIn(0));
+  EXPECT_FALSE(plate.BeginsIn(6)) << "a part of a model that goes on";
+  EXPECT_TRUE(plate.BeginsIn(20));
+  EXPECT_TRUE(plate.EndsBetween(3, 4));
+  EXPECT_TRUE(plate.EndsBetween(7, 12)) << "frames in between are missing";
+  EXPECT_FALSE(plate.EndsBetween(4, 8));
+}
+
 TEST(SurfaceAttacher, PrefersMaskThenForegroundThenNearest) {
   const AnimatedSurface wall = PlateSurface(0, 1.00f);
   const AnimatedSurface person = PlateSurface(1, 0.98f);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "splitfusion/lib/tsdf/mesh_extractor.h"
@@ -21,12 +22,18 @@ std::set<Place> PlacesOf(const TriangleMesh& mesh) {
   return places;
 }
 
-TEST(ForgetVoxels, LeavesThoseOfOtherNodes) {
+/// A wall at 1 m.
+TsdfVolume WallVolume() {
   const DepthObservation wall =
       ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1.0));
   TsdfVolume volume({0.01, 0.04, 64});
   AllocateBand(wall, Rigid3d::Identity(), &volume);
   IntegrateRigid(wall, Rigid3d::Identity(), &volume);
+  return volume;
+}
+
+TEST(ForgetVoxels, LeavesThoseOfOtherNodes) {
+  TsdfVolume volume = WallVolume();
   MeshExtractor extractor;
   const TriangleMesh before = extractor.Extract(volume, 0.1);
   const DeformationGraph graph = CoverWithNodes(before, 0.05);
@@ -58,11 +65,7 @@ TEST(ForgetVoxels, LeavesThoseOfOtherNodes) {
 }
 
 TEST(ForgetVoxels, OfNoNodesChangesNothing) {
-  const DepthObservation wall =
-      ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1.0));
-  TsdfVolume volume({0.01, 0.04, 64});
-  AllocateBand(wall, Rigid3d::Identity(), &volume);
-  IntegrateRigid(wall, Rigid3d::Identity(), &volume);
+  TsdfVolume volume = WallVolume();
   const TriangleMesh before = ExtractMesh(volume, 0.1);
   const DeformationGraph graph = CoverWithNodes(before, 0.05);
   ForgetVoxels(graph, SkinningIndex(graph, 4),
