@@ -23,7 +23,8 @@ void PipelineOptions::List(OptionList* list) {
   list->Switch("deform_background", &deform_background,
                "The background deforms, too.");
   list->Number("render_stride", &render_stride, {1, 8}, "pixels",
-               "Model maps hold every n-th pixel.");
+               "Model maps hold every n-th pixel; divides the stride of every "
+               "tracking stage, so 1 or 2.");
   for (const auto& stages : {tracker.RigidStages(), tracker.NonRigidStages()}) {
     for (const TrackingStage& stage : stages) {
       list->Demand(render_stride < 1 || stage.stride % render_stride == 0,
@@ -38,11 +39,16 @@ void PipelineOptions::List(OptionList* list) {
                "With a smaller visible fraction a surface is occluded: "
                "predicted, not tracked; 0 = never.")
       .common = true;
+  list->Number("min_coverage", &min_coverage, Range::Share(), "",
+               "A surface that is looked for is found if as many of its model "
+               "points lie on it as this share of its live pixels apart from "
+               "edges; 0 = not asked.");
   list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
                "of the image", "A surface is modelled once it covers as much.");
   list->Number("max_lost", &max_lost, Range::AtLeast(1), "frames",
-               "A deforming surface in plain view that is lost in so many "
-               "frames on end is modelled anew, under the same id.");
+               "A deforming surface that is lost in plain view in so many "
+               "frames, and tracked in none between, is modelled anew, under "
+               "the same id.");
   list->Part("normal_", &point_map);
   list->Part("", &graph);
   list->Part("background_", &background);

@@ -45,10 +45,14 @@ struct PipelineOptions {
   /// A surface of whose model less is in view, of what other surfaces could
   /// hide, is carried on as predicted, neither tracked nor fused; 0 = never.
   double min_exposure = 0.25;
+  /// A surface that is looked for where its pixels are is found if as many of
+  /// its model points lie on it as this share of those that are certain, at the
+  /// same stride: a sliver fits anywhere; 0 = not asked.
+  double min_coverage = 0.25;
   /// Fraction of the image a surface has to cover before it is modelled.
   double min_birth_area = 0.008;
-  /// A surface in plain view that is lost in so many frames on end is modelled
-  /// anew, under the same id.
+  /// A deforming surface that is lost in plain view in so many frames, and
+  /// tracked in none between, is modelled anew, under the same id.
   int max_lost = 3;
 
   PipelineOptions();

@@ -197,11 +197,13 @@ TrackState SplitFusion::StateOf(int id) const {
 bool SplitFusion::PlaceWhereSeen(Surface* surface, SurfaceReport* report) {
   const Stopwatch stopwatch;
   const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
+  const double deviation = options_.split.assignment.PlaceDeviation(
+      predictors_.at(surface->id()).frames_since() + 1);
   const std::optional<Rigid3d> shift =
       FindTranslation(VisibleSamples(RenderAlone(*surface, camera), *surface,
                                      options_.render_stride),
                       WarpField(surface->graph()), live_,
-                      static_cast<std::uint16_t>(surface->id()));
+                      static_cast<std::uint16_t>(surface->id()), deviation);
   if (shift) {
     ApplyRigidMotion(*shift, surface->mutable_graph());
     rendering_ = RenderMeshes(surfaces_, camera);
@@ -229,10 +231,26 @@ bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   // Where it was predicted a tracked one has just failed.
   const bool failed = StateOf(surface->id()) == TrackState::kTracked;
   if (!PlaceWhereSeen(surface, report) && failed) return false;
-  if (TrackObject(surface, report)) return true;
+  if (TrackObject(surface, report) && ExplainsItsPixels(report)) return true;
   *surface->mutable_graph() = before;
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
+  return false;
+}
+
+bool SplitFusion::ExplainsItsPixels(SurfaceReport* report) const {
+  const TrackingRound& last = report->rounds.back();
+  const int step = std::max(last.stride, options_.render_stride);
+  int certain = 0;
+  for (int v = 0; v < live_.depth.rows; v += step) {
+    for (int u = 0; u < live_.depth.cols; u += step) {
+      certain += IsCertain(live_, report->id, v, u);
+    }
+  }
+  if (last.association.accepted >= options_.min_coverage * certain) return true;
+  report->reason = "only " + std::to_string(last.association.accepted) +
+                   " model points for " + std::to_string(certain) +
+                   " live pixels at stride " + std::to_string(step);
   return false;
 }
 
@@ -266,7 +284,8 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     }
     Surface& surface = *surfaces_.at(object.id);
     // Joined models of one node each would share it in Eq. 3.
-    if (track.lost_frames < options_.max_lost || surface.graph().rigid() ||
+    if (track.state != TrackState::kLost ||
+        track.lost_frames < options_.max_lost || surface.graph().rigid() ||
         !surface.Reanchor(live_)) {
       continue;
     }

@@ -98,6 +98,9 @@ class SplitFusion {
   /// Tracks a surface that is lost or was occluded from where its live pixels
   /// are; leaves it where it was if that fails.
   bool TrackWhereSeen(Surface* surface, SurfaceReport* report);
+  /// Whether enough model points of what was just tracked lie on it, for the
+  /// live pixels that are certain; else the report says why not.
+  bool ExplainsItsPixels(SurfaceReport* report) const;
   void Fuse(FrameReport* report);
   /// Tells surfaces what became of their tracks.
   void FollowTracks();

@@ -142,7 +142,8 @@ void TrackerOptions::List(OptionList* list) {
   list->Number(
           "lost_distance", &lost_distance, Range::AtLeast(0), "metres",
           "In the first non-rigid stage live points without model are paired, "
-          "for live_to_model, with model points astray up to this far.")
+          "for live_to_model, with model points astray up to this far "
+          "(projective association only).")
       .common = true;
   list->Number("grazing_angle", &grazing_angle, {0, 90, true}, "degrees",
                "Between live normal and view ray; beyond, depth is not used.");
@@ -163,17 +164,19 @@ void TrackerOptions::List(OptionList* list) {
                "With a smaller share of its points in view on live depth, a "
                "deforming surface is lost.");
   list->Number("max_translation", &max_translation, Range::Above(0), "metres",
-               "Farther from the prediction, a surface is lost.");
+               "Moved farther by the rigid stages, a surface is lost.");
   list->Number("max_rotation", &max_rotation, {0, 180, true}, "degrees",
-               "Rotated farther from the prediction, a surface is lost.");
+               "Rotated farther by the rigid stages, a surface is lost.");
   list->Number("velocity_gain", &velocity_gain, Range::Above(0), "",
                "Tracking starts from constant velocity if its misfit is below "
                "this fraction of that of standing still.");
   list->Switch("keep_radius", &keep_radius,
                "The trust region of a round starts from that of the round "
                "before.");
-  list->Number("min_samples", &min_samples, Range::AtLeast(0), "",
-               "A surface with fewer samples is tracked at half the stride.");
+  list->Number(
+      "min_samples", &min_samples, Range::AtLeast(0), "",
+      "A surface with fewer samples is tracked at half the stride, or a "
+      "quarter and so on, until it has as many.");
 }
 
 void TrackerOptions::Check() const { CheckOptions(*this); }
@@ -366,12 +369,12 @@ std::string SurfaceTracker::ReasonForLoss(const Rigid3d& motion,
   if (!last.solver.usable) return "solver: " + last.solver.message;
   const double translation = motion.translation().norm();
   if (translation > options_.max_translation) {
-    return "moved " + std::to_string(translation) + " m from the prediction";
+    return "moved " + std::to_string(translation) + " m from its start";
   }
   const double rotation = RotationAngle(motion.linear());
   if (rotation > options_.max_rotation) {
     return "turned " + std::to_string(Degrees(rotation)) +
-           " degrees from the prediction";
+           " degrees from its start";
   }
   return "";
 }

@@ -47,7 +47,7 @@ struct TrackerOptions {
   /// surfaces, but for the background, before which undetected things may
   /// stand ...
   double min_fit = 0.45;
-  /// ... or if the surface moved farther than predicted by this much.
+  /// ... or if the rigid stages moved it by more than this.
   double max_translation = 0.35;  ///< Metres.
   double max_rotation = 35;       ///< Degrees.
   /// The constant-velocity prediction is believed if its misfit is below this

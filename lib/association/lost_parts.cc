@@ -10,12 +10,12 @@ namespace {
 
 /// Cells of `stride` pixels in which, or beside which, something was found.
 cv::Mat_<uchar> CoveredCells(const std::vector<Correspondence>& found,
-                             const cv::Size& image, int stride) {
-  cv::Mat_<uchar> covered(image.height / stride + 1, image.width / stride + 1,
+                             const PinholeCamera& camera, int stride) {
+  cv::Mat_<uchar> covered(camera.height / stride + 1, camera.width / stride + 1,
                           uchar(0));
   for (const Correspondence& c : found) {
-    covered(static_cast<int>(std::lround(c.pixel.y())) / stride,
-            static_cast<int>(std::lround(c.pixel.x())) / stride) = 255;
+    const auto pixel = camera.PixelAt(c.pixel.cast<float>());
+    if (pixel) covered(pixel->y() / stride, pixel->x() / stride) = 255;
   }
   cv::dilate(covered, covered, cv::Mat());
   return covered;
@@ -26,8 +26,7 @@ cv::Mat_<uchar> CoveredCells(const std::vector<Correspondence>& found,
 OpenPoints FindOpenPoints(const LiveView& live, std::uint16_t surface,
                           const std::vector<Correspondence>& found, int stride,
                           const AssociationGates& gates) {
-  const cv::Mat_<uchar> covered =
-      CoveredCells(found, live.depth.size(), stride);
+  const cv::Mat_<uchar> covered = CoveredCells(found, live.camera, stride);
   const auto min_cosine = static_cast<float>(std::cos(gates.grazing_angle));
   OpenPoints open;
   for (int v = 0; v < live.depth.rows; v += stride) {

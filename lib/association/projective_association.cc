@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "splitfusion/lib/association/pointwise_association.h"
 
 namespace splitfusion {
@@ -16,11 +14,9 @@ class ProjectiveAssociator : public PointwiseAssociator {
   Outcome Find(const Eigen::Vector3f& point, LivePixel* pixel) const override {
     if (!(point.z() > kNearPlane)) return kOutsideImage;
     pixel->place = live_.camera.Project(point);
-    const int u = pixel->u = static_cast<int>(std::lround(pixel->place.x()));
-    const int v = pixel->v = static_cast<int>(std::lround(pixel->place.y()));
-    if (u < 0 || v < 0 || u >= live_.camera.width || v >= live_.camera.height) {
-      return kOutsideImage;
-    }
+    const auto nearest = live_.camera.PixelAt(pixel->place);
+    if (!nearest) return kOutsideImage;
+    const int u = pixel->u = nearest->x(), v = pixel->v = nearest->y();
     const float depth = live_.depth(v, u);
     if (!(depth > 0) || live_.map.normals(v, u)[2] == 0) return kNoDepth;
     if (live_.labels(v, u) != surface_) {

@@ -201,14 +201,15 @@ void GraphOptions::List(OptionList* list) {
                "Node spacing of surfaces up to near_depth.")
       .common = true;
   list->Number("far_spacing", &far_spacing, Range::AtLeast(0.002), "metres",
-               "Node spacing of surfaces from far_depth on.")
+               "Node spacing of surfaces from far_depth on; at least "
+               "near_spacing.")
       .common = true;
   list->Demand(far_spacing >= near_spacing, "far_spacing",
                "metres >= near_spacing");
   list->Number("near_depth", &near_depth, Range::Above(0), "metres",
                "Depth up to which near_spacing applies.");
   list->Number("far_depth", &far_depth, Range::Above(0), "metres",
-               "Depth from which far_spacing applies.");
+               "Depth from which far_spacing applies; more than near_depth.");
   list->Demand(far_depth > near_depth, "far_depth", "metres > near_depth");
   list->Number("max_nodes", &max_nodes, Range::AtLeast(1), "nodes",
                "Nodes of a graph at most; its spacing grows to keep to that.")

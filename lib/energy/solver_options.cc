@@ -17,7 +17,7 @@ void SolverOptions::List(OptionList* list) {
                "Of gn_pcg and cgnr; auto is jacobi.")
       .common = true;
   list->Choice("trust_region", &trust_region, {"levenberg_marquardt", "dogleg"},
-               "How a step is kept short.")
+               "Of ceres: how a step is kept short.")
       .common = true;
   list->Demand(trust_region != "dogleg" || linear_solver != "cgnr",
                "trust_region",
@@ -43,7 +43,7 @@ void SolverOptions::List(OptionList* list) {
   list->Number("initial_radius", &initial_radius, Range::Above(0), "",
                "First radius of the trust region; 1 / damping.");
   list->Switch("full_report", &full_report,
-               "Write Ceres' FullReport() of every solve.");
+               "Of ceres: write FullReport() of every solve.");
 }
 
 void SolverOptions::Check() const { CheckOptions(*this); }

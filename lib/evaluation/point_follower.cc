@@ -1,6 +1,5 @@
 #include "splitfusion/lib/evaluation/point_follower.h"
 
-#include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -26,12 +25,9 @@ class FrameMask {
 
   /// Surface id at the pixel of a point (camera frame); 0 if none.
   int IdAt(const Eigen::Vector3d& point) const {
-    if (!known() || point.z() <= 0) return 0;
-    const Eigen::Vector2d pixel = camera_.Project(point);
-    const double u = std::round(pixel.x());
-    const double v = std::round(pixel.y());
-    if (!(u >= 0 && v >= 0 && u < labels_.cols && v < labels_.rows)) return 0;
-    return labels_(static_cast<int>(v), static_cast<int>(u));
+    if (!known()) return 0;
+    const auto pixel = camera_.PixelOf(point.cast<float>());
+    return pixel ? labels_(pixel->y(), pixel->x()) : 0;
   }
 
  private:

@@ -41,15 +41,12 @@ struct Corners {
 /// but for `margin` pixels.
 float LiveDepthAt(const Eigen::Vector3f& point, const PinholeCamera& camera,
                   const cv::Mat_<float>& live, int margin, cv::Point* pixel) {
-  const Eigen::Vector2f projected = camera.Project(point);
-  const float u = std::rint(projected.x());
-  const float v = std::rint(projected.y());
-  if (!(u >= margin && v >= margin && u < live.cols - margin &&
-        v < live.rows - margin)) {
-    return 0;
-  }
-  *pixel = {static_cast<int>(u), static_cast<int>(v)};
-  return live(*pixel);
+  const auto at = camera.PixelOf(point);
+  if (!at) return 0;
+  *pixel = {at->x(), at->y()};
+  const cv::Rect inner(margin, margin, live.cols - 2 * margin,
+                       live.rows - 2 * margin);
+  return pixel->inside(inner) ? live(*pixel) : 0;
 }
 
 /// Marks the pixels at which points lie at the live depth.

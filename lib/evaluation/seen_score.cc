@@ -10,8 +10,6 @@
 namespace splitfusion {
 namespace {
 
-/// Nearer points are not looked at, metres.
-constexpr double kNearest = 0.2;
 /// Of a vertex's pixel from one that shows it, in both directions.
 constexpr int kReach = 2;
 /// Of a seen vertex from the live depth, metres.
@@ -28,17 +26,13 @@ using Scores = std::map<int, std::map<int, SeenFrame>>;
 bool IsShown(const Eigen::Vector3d& point, int instance,
              const PinholeCamera& camera, const cv::Mat_<std::uint16_t>& labels,
              const cv::Mat_<float>& depth) {
-  if (!(point.z() > kNearest)) return false;
-  const Eigen::Vector2d pixel = camera.Project(point);
-  const double u = std::rint(pixel.x());
-  const double v = std::rint(pixel.y());
-  if (!(u >= kReach && v >= kReach && u < labels.cols - kReach &&
-        v < labels.rows - kReach)) {
-    return false;
-  }
+  const auto pixel = camera.PixelOf(point.cast<float>());
+  const cv::Rect inner(kReach, kReach, labels.cols - 2 * kReach,
+                       labels.rows - 2 * kReach);
+  if (!pixel || !cv::Point(pixel->x(), pixel->y()).inside(inner)) return false;
   for (const int dv : {-kReach, 0, kReach}) {
     for (const int du : {-kReach, 0, kReach}) {
-      const cv::Point at(static_cast<int>(u) + du, static_cast<int>(v) + dv);
+      const cv::Point at(pixel->x() + du, pixel->y() + dv);
       if (labels(at) == instance && depth(at) > 0 &&
           std::abs(depth(at) - point.z()) < kDepthTolerance) {
         return true;

@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_GEOMETRY_CAMERA_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace splitfusion {
 
@@ -23,6 +24,24 @@ struct PinholeCamera {
   Eigen::Matrix<T, 2, 1> Project(const Eigen::Matrix<T, 3, 1>& point) const {
     return {T(fx) * point.x() / point.z() + T(cx),
             T(fy) * point.y() / point.z() + T(cy)};
+  }
+
+  /// Pixel that `place`, as of Project(), lies in; none beyond the image.
+  std::optional<Eigen::Vector2i> PixelAt(const Eigen::Vector2f& place) const {
+    // The middle of pixel 0 is at 0.
+    const float u = place.x() + 0.5f, v = place.y() + 0.5f;
+    if (!(u > 0 && v > 0 && u < static_cast<float>(width) &&
+          v < static_cast<float>(height))) {
+      return std::nullopt;
+    }
+    return Eigen::Vector2i(static_cast<int>(u), static_cast<int>(v));
+  }
+
+  /// Pixel that shows a point of the camera frame, metres; none if the point is
+  /// nearer than kNearPlane or beyond the image.
+  std::optional<Eigen::Vector2i> PixelOf(const Eigen::Vector3f& point) const {
+    if (!(point.z() > kNearPlane)) return std::nullopt;
+    return PixelAt(Project(point));
   }
 
   /// Point of the camera frame at pixel (u, v) and z-depth `depth` (metres).

@@ -3,8 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <cmath>
-
 #include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
@@ -14,12 +12,10 @@ namespace {
 /// alone that it is there.
 DepthState LookAt(const LiveView& live, int surface,
                   const Eigen::Vector3f& point, float truncation) {
-  if (!(point.z() > kNearPlane)) return DepthState::kUnmeasured;
-  const Eigen::Vector2f pixel = live.camera.Project(point);
-  const int u = static_cast<int>(std::lround(pixel.x()));
-  const int v = static_cast<int>(std::lround(pixel.y()));
-  if (u < 0 || v < 0 || u >= live.camera.width || v >= live.camera.height ||
-      live.uncertain(v, u) != 0 || live.edges(v, u) != 0) {
+  const auto pixel = live.camera.PixelOf(point);
+  if (!pixel) return DepthState::kUnmeasured;
+  const int u = pixel->x(), v = pixel->y();
+  if (live.uncertain(v, u) != 0 || live.edges(v, u) != 0) {
     return DepthState::kUnmeasured;
   }
   const float depth = live.depth(v, u);

@@ -317,7 +317,8 @@ void RayCastOptions::List(OptionList* list) {
   list->Number("min_depth", &min_depth, Range::Above(0), "metres",
                "Nearest depth at which the background is rendered.");
   list->Number("max_depth", &max_depth, Range::Above(0), "metres",
-               "Farthest depth at which the background is rendered.");
+               "Farthest depth at which the background is rendered; more than "
+               "ray_min_depth.");
   list->Demand(max_depth > min_depth, "max_depth", "metres > ray_min_depth");
   list->Number("min_weight", &min_weight, Range::AtLeast(0), "",
                "Voxels of the background with less weight are not surface.");

@@ -22,8 +22,7 @@ double Limited(double ratio, const AssignmentOptions& options) {
 /// Of equal independent normal deviations against a uniform place in the room.
 double PlaceRatio(double distance, int frames,
                   const AssignmentOptions& options) {
-  const double sigma =
-      std::min(options.room, options.place_sigma + options.way * frames);
+  const double sigma = options.PlaceDeviation(frames);
   const double deviation = distance / sigma;
   return Limited(
       3 * std::log(options.room / sigma) - 0.5 * deviation * deviation,

@@ -11,12 +11,18 @@ void AssignmentOptions::List(OptionList* list) {
                "Intersection of colour histograms that tells nothing.");
   list->Number("color_slope", &color_slope, Range::AtLeast(0), "",
                "Log-likelihood ratio for a unit of it more.");
-  list->Number("place_sigma", &place_sigma, Range::Above(0), "metres",
-               "Standard deviation of the place between two frames.");
-  list->Number("way", &way, Range::AtLeast(0), "metres",
-               "Added to it for every frame since the last detection.");
-  list->Number("room", &room, Range::Above(0), "metres",
-               "Extent of the room, where others are anywhere.");
+  list->Number(
+      "place_sigma", &place_sigma, Range::Above(0), "metres",
+      "Standard deviation of the place between two frames; also in the "
+      "search for a surface that is found again.");
+  list->Number(
+      "way", &way, Range::AtLeast(0), "metres",
+      "Added to it for every frame since the last detection, or, in the "
+      "search, since it was tracked.");
+  list->Number(
+      "room", &room, Range::Above(0), "metres",
+      "Extent of the room, where others are anywhere; the deviation is "
+      "no greater.");
   list->Number("limit", &limit, Range::Above(0), "",
                "Largest log-likelihood ratio of one cue.");
   list->Number("untrusted", &untrusted, Range::AtLeast(0), "",

@@ -1,6 +1,8 @@
 #ifndef SPLITFUSION_LIB_SPLIT_ASSIGNMENT_OPTIONS_H_
 #define SPLITFUSION_LIB_SPLIT_ASSIGNMENT_OPTIONS_H_
 
+#include <algorithm>
+
 #include "splitfusion/lib/base/option_list.h"
 
 namespace splitfusion {
@@ -28,6 +30,12 @@ struct AssignmentOptions {
   double untrusted = 3;
   /// Share of a detection inside of a surface that makes it a piece of it.
   double min_contained = 0.6;
+
+  /// Standard deviation, metres, of the place of a surface that was last seen
+  /// so many frames ago.
+  double PlaceDeviation(int frames) const {
+    return std::min(room, place_sigma + way * frames);
+  }
 
   /// Names, ranges and meaning of all fields.
   void List(OptionList* list);

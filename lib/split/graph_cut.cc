@@ -198,9 +198,10 @@ class GridGraph {
 
 void GraphCutOptions::List(OptionList* list) {
   list->Number("core_erosion", &core_erosion, {1, 100}, "pixels",
-               "A mask eroded by so much is certain foreground.");
+               "So far inside of a mask its evidence has its full weight.");
   list->Number("outer_dilation", &outer_dilation, {1, 200}, "pixels",
-               "What is farther from a mask is certain background.");
+               "What is farther from mask and predicted surface is certain "
+               "background.");
   list->Number(
       "step_factor", &step_factor, Range::Above(0), "",
       "A depth step of so many times the noise lowers the weight of an "

@@ -11,8 +11,10 @@ struct PointMap;
 
 /// Weights of the 3D min-cut of SplitFusion IV-A.
 struct GraphCutOptions {
-  int core_erosion = 5;     ///< Pixels; the eroded mask is surely foreground.
-  int outer_dilation = 12;  ///< Pixels; beyond it is surely background.
+  /// So far inside of a mask its evidence has its full weight, pixels.
+  int core_erosion = 5;
+  /// Farther from mask and predicted surface is surely background, pixels.
+  int outer_dilation = 12;
   /// A step between neighbours of this many times the axial noise (plus
   /// `step_offset`, metres) lowers their edge to 1/e.
   double step_factor = 3.0;

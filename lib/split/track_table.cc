@@ -6,10 +6,10 @@ namespace splitfusion {
 
 void Track::Apply(TrackEvent event) {
   state = Next(state, event);
-  if (state != TrackState::kLost) {
-    lost_frames = 0;
-  } else if (event == TrackEvent::kMisfits) {
+  if (state == TrackState::kLost && event == TrackEvent::kMisfits) {
     ++lost_frames;
+  } else if (state == TrackState::kTracked || state == TrackState::kInactive) {
+    lost_frames = 0;
   }
 }
 

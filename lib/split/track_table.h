@@ -20,7 +20,7 @@ struct Track {
   int last_detected_frame = 0;  ///< Latest frame with a detection of it.
   TrackState state = TrackState::kTentative;  ///< Changed by Apply() alone.
   Appearance appearance;                ///< Of the frames it was detected.
-  int lost_frames = 0;                  ///< kMisfits on end.
+  int lost_frames = 0;                  ///< kMisfits since tracked or inactive.
   double usual_pixels = 0;              ///< Running mean while it is tracked.
   std::map<std::string, double> votes;  ///< Sum of scores by class.
   int merged_into = 0;  ///< Surface that it turned out to be; 0 = none.

@@ -36,11 +36,9 @@ bool IsSeen(const Vector3f& point, const Vector3f& normal,
       normal.dot(point) >= 0) {
     return false;
   }
-  const Eigen::Vector2f pixel = camera.Project(point);
-  const int u = static_cast<int>(std::lround(pixel.x()));
-  const int v = static_cast<int>(std::lround(pixel.y()));
-  return u >= 0 && u < depth.cols && v >= 0 && v < depth.rows &&
-         std::abs(depth(v, u) - point.z()) < kSeenTolerance;
+  const auto pixel = camera.PixelOf(point);
+  return pixel &&
+         std::abs(depth(pixel->y(), pixel->x()) - point.z()) < kSeenTolerance;
 }
 
 }  // namespace

@@ -80,10 +80,9 @@ std::vector<TrackPoint> SampleSurface(const TriangleMesh& mesh, int instance,
 /// lie behind the pixel's depth only by what the slope explains.
 bool IsSeen(const Vector3f& point, int instance, const SyntheticFrame& frame,
             const PinholeCamera& camera) {
-  if (point.z() <= 0.01f) return false;
-  const Eigen::Vector2f pixel = camera.Project(point);
-  const int u = static_cast<int>(std::lround(pixel.x()));
-  const int v = static_cast<int>(std::lround(pixel.y()));
+  const auto pixel = camera.PixelOf(point);
+  if (!pixel) return false;
+  const int u = pixel->x(), v = pixel->y();
   const cv::Rect inner(1, 1, camera.width - 2, camera.height - 2);
   if (!inner.contains(cv::Point(u, v)) ||
       frame.labels.at<unsigned char>(v, u) != instance) {

@@ -27,6 +27,9 @@ class MotionPredictor {
   /// Predicted motion over the next frame, world from world.
   const Rigid3d& velocity() const { return velocity_; }
 
+  /// Frames since it was tracked last; 0: in the latest one.
+  int frames_since() const { return frames_since_; }
+
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {

@@ -121,43 +121,88 @@ Vote VoteFor(const cv::Point& shift, const std::vector<Cell>& model,
     best = {sum, kAgreeingDistance *
                      (static_cast<float>(bin) + (at[1] - at[-1]) / sum)};
   }
-  best.worth += kSilhouette * covered;
+  best.worth += kSilhouette * static_cast<float>(covered);
   return best;
 }
+
+/// The votes for all shifts of a model over the live frame.
+class Votes {
+ public:
+  /// `step`: pixels of the live frame from cell to cell.
+  Votes(const std::vector<Cell>& model, const LiveGrid& live,
+        const PinholeCamera& camera, int step) {
+    const float z = MedianDepth(live.cells);
+    step_x_ = step * z / camera.fx;
+    step_y_ = step * z / camera.fy;
+    const cv::Rect from = BoundsOf(model), to = BoundsOf(live.cells);
+    first_ = to.tl() - from.br() + cv::Point(1, 1);
+    size_ = to.size() + from.size() - cv::Size(1, 1);
+    votes_.reserve(size_.area());
+    for (int y = 0; y < size_.height; ++y) {
+      for (int x = 0; x < size_.width; ++x) {
+        votes_.push_back(
+            VoteFor(first_ + cv::Point(x, y), model, live, z + kOneBody.At(z)));
+      }
+    }
+  }
+
+  /// Of the shifts that beat their neighbours the way, metres, for which most
+  /// speaks, weighed by a normal deviation; none if nothing speaks for any.
+  std::optional<Eigen::Vector3d> MostProbable(double deviation) const {
+    std::optional<Eigen::Vector3d> best;
+    double most = 0;
+    for (int y = 0; y < size_.height; ++y) {
+      for (int x = 0; x < size_.width; ++x) {
+        const Vote& vote = At(x, y);
+        if (!(vote.worth > most)) continue;  // Weighed, it is less.
+        const Eigen::Vector3d way((first_.x + x) * step_x_,
+                                  (first_.y + y) * step_y_, vote.depth_change);
+        const double worth = vote.worth * std::exp(-0.5 * way.squaredNorm() /
+                                                   (deviation * deviation));
+        if (!(worth > most) || !IsPeak(x, y)) continue;
+        most = worth;
+        best = way;
+      }
+    }
+    return best;
+  }
+
+ private:
+  const Vote& At(int x, int y) const { return votes_[y * size_.width + x]; }
+
+  bool IsPeak(int x, int y) const {
+    for (int v = std::max(0, y - 1); v <= std::min(size_.height - 1, y + 1);
+         ++v) {
+      for (int u = std::max(0, x - 1); u <= std::min(size_.width - 1, x + 1);
+           ++u) {
+        if (At(u, v).worth > At(x, y).worth) return false;
+      }
+    }
+    return true;
+  }
+
+  double step_x_, step_y_;  // From shift to shift, metres.
+  cv::Point first_;         // Shift, cells.
+  cv::Size size_;
+  std::vector<Vote> votes_;  // By row and column.
+};
 
 }  // namespace
 
 std::optional<Rigid3d> FindTranslation(const std::vector<ModelSample>& samples,
                                        const WarpField& warp,
                                        const LiveView& live,
-                                       std::uint16_t surface) {
+                                       std::uint16_t surface,
+                                       double deviation) {
   const int step = std::max(1, live.depth.cols / kColumns);
   const std::vector<Cell> model = ModelCells(samples, warp, step);
   const LiveGrid grid(live, surface, step);
   if (model.empty() || grid.cells.empty()) return std::nullopt;
-  const float z = MedianDepth(grid.cells);
-  const cv::Rect from = BoundsOf(model), to = BoundsOf(grid.cells);
-  Vote best;
-  cv::Point best_shift;
-  for (int y = to.y - from.br().y + 1; y < to.br().y - from.y; ++y) {
-    for (int x = to.x - from.br().x + 1; x < to.br().x - from.x; ++x) {
-      const cv::Point shift(x, y);
-      const Vote vote = VoteFor(shift, model, grid, z + kOneBody.At(z));
-      // Of equal ones the shortest.
-      if (vote.worth < best.worth ||
-          (vote.worth == best.worth &&
-           cv::norm(shift) >= cv::norm(best_shift))) {
-        continue;
-      }
-      best = vote;
-      best_shift = shift;
-    }
-  }
-  if (!(best.worth > 0)) return std::nullopt;
+  const auto way =
+      Votes(model, grid, live.camera, step).MostProbable(deviation);
+  if (!way) return std::nullopt;
   Rigid3d motion = Rigid3d::Identity();
-  motion.translation() = Eigen::Vector3d(
-      best_shift.x * step * z / live.camera.fx,
-      best_shift.y * step * z / live.camera.fy, best.depth_change);
+  motion.translation() = *way;
   return motion;
 }
 

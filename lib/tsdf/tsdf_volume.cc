@@ -128,7 +128,7 @@ void TsdfOptions::List(OptionList* list) {
                "Edge length of a voxel.")
       .common = true;
   list->Number("truncation", &truncation, Range::Above(0), "metres",
-               "Truncation distance.")
+               "Truncation distance, 2 to 50 voxels.")
       .common = true;
   list->Demand(truncation >= 2 * voxel_size && truncation <= 50 * voxel_size,
                "truncation",

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
-#include <cmath>
 #include <deque>
 #include <utility>
 #include <vector>
@@ -187,17 +186,9 @@ void MarkForeign(const DepthObservation& observation, float voxel,
     const int lowest = 9 * (i >> 2) + 3 * ((i >> 1) & 1) + (i & 1);
     const Eigen::Vector3f center = CellCenter(warped, lowest);
     foreign[i] = false;
-    if (!(center.z() > 0)) continue;
-    const PinholeCamera& camera = observation.camera;
-    const Eigen::Vector2f pixel = camera.Project(center);
-    if (!(std::abs(pixel.x()) < camera.width &&
-          std::abs(pixel.y()) < camera.height)) {
-      continue;
-    }
-    const int u = static_cast<int>(std::lround(pixel.x()));
-    const int v = static_cast<int>(std::lround(pixel.y()));
-    if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
-    const cv::Vec3f& at = observation.places(v, u);
+    const auto pixel = observation.camera.PixelOf(center);
+    if (!pixel) continue;
+    const cv::Vec3f& at = observation.places(pixel->y(), pixel->x());
     const Eigen::Vector3f apart =
         LatticePoint(origin, voxel, LatticeIndex(lowest)) + half_cell -
         Eigen::Vector3f(at[0], at[1], at[2]);
@@ -273,7 +264,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
                                  const SkinningIndex& index,
                                  const WarpField& warp, double reach,
                                  TsdfVolume* volume,
-                                 const std::vector<char>& astray) {
+                                 const std::vector<char>& refuted) {
   CheckObservation(observation, volume->options());
   TsdfVolume::Grids& grids = volume->grids();
   const std::vector<internal::LeafBuffers>& leaves = grids.leaves;
@@ -301,7 +292,7 @@ void WarpedIntegrator::Integrate(const DepthObservation& observation,
   });
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
     if (!lattices[i].attached ||
-        (!astray.empty() && astray[MiddleNode(lattices[i])] != 0)) {
+        (!refuted.empty() && refuted[MiddleNode(lattices[i])] != 0)) {
       return;
     }
     const WarpedLattice warped = GatherLattice(

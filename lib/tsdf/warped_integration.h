@@ -34,7 +34,7 @@ class WarpedIntegrator {
                    const TsdfVolume& volume);
 
   /// Fuses one observation. Blocks farther than `reach` (metres) from every
-  /// node are left alone, and those around nodes that are `astray` (of every
+  /// node are left alone, and those around nodes that are `refuted` (of every
   /// node whether it is; empty: none): where the warp is wrong an observation
   /// tells nothing of the shape.
   ///
@@ -42,7 +42,7 @@ class WarpedIntegrator {
   void Integrate(const DepthObservation& observation,
                  const SkinningIndex& index, const WarpField& warp,
                  double reach, TsdfVolume* volume,
-                 const std::vector<char>& astray = {});
+                 const std::vector<char>& refuted = {});
 
  private:
   struct Cache;

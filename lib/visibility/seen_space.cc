@@ -43,16 +43,9 @@ void SeenSpace::Thin() {
 
 bool SeenSpace::LookedThrough(const View& view,
                               const Eigen::Vector3f& point) const {
-  if (point.z() <= 0) return false;
-  const Eigen::Vector2f pixel = camera_.Project(point);
-  // The middle of pixel 0 is at 0.
-  const float x = pixel.x() + 0.5f, y = pixel.y() + 0.5f;
-  if (!(x >= 0 && y >= 0 && x < static_cast<float>(camera_.width) &&
-        y < static_cast<float>(camera_.height))) {
-    return false;
-  }
-  const int u = static_cast<int>(x), v = static_cast<int>(y);
-  const float seen = view.depth(v, u);
+  const auto pixel = camera_.PixelOf(point);
+  if (!pixel) return false;
+  const float seen = view.depth(pixel->y(), pixel->x());
   // Both are noisy.
   const float tolerance = kOneBody.At(point.z()) + kNoiseAlone.At(seen);
   return ClassifyDepth(seen, point.z(), tolerance) == DepthState::kFree;

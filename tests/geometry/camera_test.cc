@@ -27,6 +27,26 @@ TEST(PinholeCamera, XIsRightAndYIsDown) {
   EXPECT_GT(kCamera.Project(Eigen::Vector3d(0, 0.1, 1)).y(), kCamera.cy);
 }
 
+TEST(PinholeCamera, FindsThePixelThatShowsAPoint) {
+  const auto pixel = [](float u, float v, float depth) {
+    return kCamera.PixelOf(kCamera.BackProject(u, v, depth));
+  };
+  EXPECT_EQ(pixel(0.4f, 100.6f, 2), Eigen::Vector2i(0, 101));
+  EXPECT_EQ(pixel(-0.4f, 479.4f, 2), Eigen::Vector2i(0, 479));
+  EXPECT_EQ(kCamera.PixelAt({0.5f, 238.5f}), Eigen::Vector2i(1, 239));
+  for (const auto& beyond : {Eigen::Vector2f(-0.5f, 5),
+                             {5, -0.5f},
+                             {639.5f, 5},
+                             {5, 479.5f},
+                             {1e30f, 5}}) {
+    EXPECT_FALSE(kCamera.PixelAt(beyond)) << beyond.transpose();
+  }
+  EXPECT_FALSE(pixel(5, 5, 0.5f * kNearPlane));
+  EXPECT_FALSE(kCamera.PixelOf({0, 0, -1}));
+  EXPECT_FALSE(kCamera.PixelOf({0, 0, NAN}));
+  EXPECT_FALSE(kCamera.PixelAt({NAN, 5}));
+}
+
 TEST(PinholeCamera, SubsampledSeesTheSamePointsAtEveryKthPixel) {
   const PinholeCamera half = kCamera.Subsampled(4);
   EXPECT_EQ(half.width, 160);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
+#include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/deformation/graph_file.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/surface_output.h"
@@ -149,6 +151,78 @@ TEST(Surface, ForgetsWhatHangsInFreeSpaceButForTheFramesSoFar) {
   EXPECT_EQ(model.graph.parts[1].first_frame, 4);
   EXPECT_EQ(model.graph.parts[1].end_frame, ModelPart::kNoEnd);
   EXPECT_EQ(model.history.frames.size(), 20u);
+}
+
+TEST(Surface, GrowsAndForgetsInOneFrame) {
+  const cv::Rect left(20, 40, 30, 40), right(80, 40, 30, 40);
+  const cv::Rect middle(50, 40, 30, 40);
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(middle | right)));
+  box.RecordMotions(4, true);
+  const auto fuse = [&](const cv::Rect& area, int frame) {
+    const int forgotten = box.Fuse(ViewWithBox(area));
+    box.UpdateMesh();
+    box.RecordMotions(frame, true);
+    return forgotten;
+  };
+  // Its right third goes; its left third comes when that is forgotten.
+  EXPECT_EQ(fuse(middle, 5), 0);
+  EXPECT_EQ(fuse(middle, 6), 0);
+  const PinholeCamera camera = SmallCamera();
+  const auto grown = [&] {
+    int vertices = 0;
+    for (const Eigen::Vector3f& v : box.mesh().vertices) {
+      vertices += camera.Project(v).x() < middle.x - 2;
+    }
+    return vertices;
+  };
+  EXPECT_LT(grown(), 10);
+  EXPECT_GT(fuse(left | middle, 7), 0);
+  EXPECT_GT(grown(), 100);
+  for (int frame = 8; frame < 12; ++frame) {
+    EXPECT_EQ(fuse(left | middle, frame), 0);
+  }
+  const SurfaceModel model = box.Model();
+  ASSERT_EQ(model.graph.parts.size(), 2u);
+  EXPECT_EQ(model.graph.parts[1].node, model.graph.size() - box.graph().size());
+  EXPECT_GT(grown(), 100);
+  for (const Eigen::Vector3f& v : box.mesh().vertices) {
+    EXPECT_LT(camera.Project(v).x(), right.x + 2);
+  }
+}
+
+TEST(Surface, RefutedPartsGoOnAfterACheckpoint) {
+  Surface whole = MakeBox(SurfaceKind::kNonRigid);
+  Surface resumed = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(whole.Initialize(ViewWithBox(kWhole)));
+  for (int frame = 4; frame < 16; ++frame) {
+    // The right half is gone from frame 8 on: forgotten in frame 10.
+    const LiveView live = ViewWithBox(frame < 8 ? kWhole : kHalf);
+    if (frame == 10 || frame == 12) {
+      std::stringstream stream;
+      ArchiveWriter writer(&stream);
+      writer(whole);
+      writer.Flush();
+      resumed = MakeBox(SurfaceKind::kNonRigid);
+      ArchiveReader reader(&stream, stream.str().size(), "state");
+      reader(resumed);
+    }
+    const int forgotten = whole.Fuse(live);
+    EXPECT_EQ(forgotten > 0, frame == 10);
+    whole.UpdateMesh();
+    whole.RecordMotions(frame, true);
+    if (frame < 10) continue;
+    EXPECT_EQ(resumed.Fuse(live), forgotten) << frame;
+    resumed.UpdateMesh();
+    resumed.RecordMotions(frame, true);
+  }
+  const SurfaceModel a = whole.Model(), b = resumed.Model();
+  EXPECT_EQ(a.mesh.vertices, b.mesh.vertices);
+  EXPECT_EQ(a.graph.positions, b.graph.positions);
+  ASSERT_EQ(b.graph.parts.size(), 2u);
+  EXPECT_EQ(b.graph.parts[0].end_frame, 10);
+  EXPECT_EQ(b.graph.parts[1].node, a.graph.parts[1].node);
+  EXPECT_EQ(b.history.frames.size(), a.history.frames.size());
 }
 
 TEST(Surface, ZeroFramesForgetNoParts) {

@@ -26,7 +26,7 @@ TEST(TrackState, FollowsItsEvents) {
   EXPECT_EQ(Next(S::kInactive, E::kFits), S::kInactive);
 }
 
-TEST(Track, CountsTheFramesInWhichItIsLostOnEnd) {
+TEST(Track, CountsTheFramesInWhichItIsLostUntilItIsTracked) {
   Track track;
   track.Apply(TrackEvent::kConfirmed);
   track.Apply(TrackEvent::kMisfits);
@@ -34,6 +34,13 @@ TEST(Track, CountsTheFramesInWhichItIsLostOnEnd) {
   track.Apply(TrackEvent::kMisfits);
   EXPECT_EQ(track.lost_frames, 2);
   track.Apply(TrackEvent::kLittleInView);
+  EXPECT_EQ(track.lost_frames, 2);
+  track.Apply(TrackEvent::kMisfits);
+  EXPECT_EQ(track.lost_frames, 3);
+  track.Apply(TrackEvent::kFits);
+  EXPECT_EQ(track.lost_frames, 0);
+  track.Apply(TrackEvent::kMisfits);
+  track.Apply(TrackEvent::kGone);
   EXPECT_EQ(track.lost_frames, 0);
 }
 

@@ -55,9 +55,11 @@ std::vector<ModelSample> SamplesOf(const std::vector<Plate>& plates) {
 }
 
 std::optional<Rigid3d> Find(const std::vector<Plate>& model,
-                            const LiveView& live, std::uint16_t surface = 1) {
+                            const LiveView& live, std::uint16_t surface = 1,
+                            double deviation = 0.3) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  return FindTranslation(SamplesOf(model), WarpField(graph), live, surface);
+  return FindTranslation(SamplesOf(model), WarpField(graph), live, surface,
+                         deviation);
 }
 
 TEST(FindTranslation, FindsAFarJump) {
@@ -94,12 +96,39 @@ TEST(FindTranslation, ALegThatHasSwungDoesNotMisleadIt) {
 }
 
 TEST(FindTranslation, GreyValuesTellWhereABodyIsOnALargerOne) {
-  const auto found = Find({{{40, 64, 40, 64}, 2.0f, 220}},
-                          ViewOf({{{120, 40, 160, 160}, 2.0f, 40},
-                                  {{216, 96, 40, 64}, 2.0f, 220}}));
+  const auto found = Find(
+      {{{40, 64, 40, 64}, 2.0f, 220}},
+      ViewOf({{{120, 40, 160, 160}, 2.0f, 40}, {{216, 96, 40, 64}, 2.0f, 220}}),
+      1, 2.0);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->translation().x(), 176 * 2.0 / 260, 0.04);
   EXPECT_NEAR(found->translation().y(), 32 * 2.0 / 260, 0.04);
+}
+
+// Two places look like it; the farther one shows a little more of it.
+TEST(FindTranslation, AFarWayNeedsMoreThatSpeaksForIt) {
+  const std::vector<Plate> model = {{{40, 64, 48, 80}, 2.0f, 100}};
+  const LiveView live =
+      ViewOf({{{52, 64, 48, 72}, 2.0f, 100}, {{200, 64, 48, 80}, 2.0f, 100}});
+  const auto far = Find(model, live, 1, 4.0);
+  ASSERT_TRUE(far);
+  EXPECT_NEAR(far->translation().x(), 160 * 2.0 / 260, 0.04);
+  const auto near = Find(model, live, 1, 0.2);
+  ASSERT_TRUE(near);
+  EXPECT_NEAR(near->translation().x(), 12 * 2.0 / 260, 0.04);
+}
+
+// Behind itself, or less of it aside.
+TEST(FindTranslation, AChangeOfDepthIsAWay) {
+  const std::vector<Plate> model = {{{40, 64, 12, 80}, 2.0f, 100}};
+  const LiveView live =
+      ViewOf({{{40, 64, 12, 80}, 2.36f, 100}, {{68, 64, 12, 72}, 2.0f, 100}});
+  const auto behind = Find(model, live, 1, 4.0);
+  ASSERT_TRUE(behind);
+  EXPECT_NEAR(behind->translation().z(), 0.36, 0.03);
+  const auto aside = Find(model, live, 1, 0.15);
+  ASSERT_TRUE(aside);
+  EXPECT_NEAR(aside->translation().z(), 0, 0.03);
 }
 
 TEST(FindTranslation, SaysWhenNothingIsSeen) {
