@@ -155,6 +155,20 @@ void TrackerOptions::List(OptionList* list) {
   list->Number(
       "settled", &settled, Range::AtLeast(0), "",
       "A rigid stage ends when the relative change of the cost is smaller.");
+  ListBounds(list);
+  list->Number("velocity_gain", &velocity_gain, Range::Above(0), "",
+               "Tracking starts from constant velocity if its misfit is below "
+               "this fraction of that of standing still.");
+  list->Switch("keep_radius", &keep_radius,
+               "The trust region of a round starts from that of the round "
+               "before.");
+  list->Number(
+      "min_samples", &min_samples, Range::AtLeast(0), "",
+      "A surface with fewer samples is tracked at half the stride, or a "
+      "quarter and so on, until it has as many.");
+}
+
+void TrackerOptions::ListBounds(OptionList* list) {
   list->Number("min_correspondences", &min_correspondences, Range::AtLeast(6),
                "pairs", "With fewer in the last round a surface is lost.");
   list->Number("min_accepted", &min_accepted, Range::Share(), "",
@@ -167,16 +181,6 @@ void TrackerOptions::List(OptionList* list) {
                "Moved farther by the rigid stages, a surface is lost.");
   list->Number("max_rotation", &max_rotation, {0, 180, true}, "degrees",
                "Rotated farther by the rigid stages, a surface is lost.");
-  list->Number("velocity_gain", &velocity_gain, Range::Above(0), "",
-               "Tracking starts from constant velocity if its misfit is below "
-               "this fraction of that of standing still.");
-  list->Switch("keep_radius", &keep_radius,
-               "The trust region of a round starts from that of the round "
-               "before.");
-  list->Number(
-      "min_samples", &min_samples, Range::AtLeast(0), "",
-      "A surface with fewer samples is tracked at half the stride, or a "
-      "quarter and so on, until it has as many.");
 }
 
 void TrackerOptions::Check() const { CheckOptions(*this); }

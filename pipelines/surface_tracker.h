@@ -68,6 +68,10 @@ struct TrackerOptions {
   void List(OptionList* list);
   /// @throw OptionError if a value is out of its range.
   void Check() const;
+
+ private:
+  /// Those beyond which a surface is lost.
+  void ListBounds(OptionList* list);
 };
 
 /// Tracks one surface from model to frame (SplitFusion IV-C): alternates
