@@ -22,7 +22,7 @@ set(BUILD_SHARED_LIBS "${splitfusion_shared}")
 
 find_dependency(Eigen3 3.4 NO_MODULE)
 find_dependency(Ceres 2.1 COMPONENTS SuiteSparse)
-find_dependency(OpenCV 4.5 COMPONENTS core imgproc imgcodecs dnn)
+find_dependency(OpenCV 4.5 COMPONENTS core imgproc imgcodecs video dnn)
 find_dependency(PCL 1.12 COMPONENTS common kdtree)
 find_dependency(nlohmann_json 3.11)
 find_dependency(SQLite3 3)

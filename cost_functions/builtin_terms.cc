@@ -5,6 +5,7 @@
 #include "splitfusion/cost_functions/live_to_model.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
 #include "splitfusion/cost_functions/temporal_arap.h"
+#include "splitfusion/cost_functions/tracks.h"
 
 namespace splitfusion {
 
@@ -19,6 +20,7 @@ TermRegistry BuiltinTerms() {
                     [] { return std::make_unique<LiveToModelTerm>(); });
   registry.Register("temporal_arap",
                     [] { return std::make_unique<TemporalArapTerm>(); });
+  registry.Register("tracks", [] { return std::make_unique<TracksTerm>(); });
   return registry;
 }
 

@@ -7,7 +7,7 @@
 namespace splitfusion {
 
 /// Registry with the built-in terms: point_to_plane (Eq. 5), arap (Eq. 6), and
-/// not in the paper color, live_to_model and temporal_arap.
+/// not in the paper color, live_to_model, tracks and temporal_arap.
 TermRegistry BuiltinTerms();
 
 }  // namespace splitfusion

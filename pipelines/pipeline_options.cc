@@ -54,6 +54,7 @@ void PipelineOptions::List(OptionList* list) {
   list->Part("background_", &background);
   list->Part("object_", &object);
   list->Part("", &tracker);
+  list->Part("", &point_tracks);
   list->Part("", &solver);
   list->Part("", &split);
   list->Part("ray_", &ray_cast);

@@ -7,6 +7,7 @@
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/ray_caster.h"
 #include "splitfusion/lib/split/split_options.h"
+#include "splitfusion/lib/tracking/point_tracks.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
@@ -26,6 +27,8 @@ struct PipelineOptions {
   GraphOptions graph;
   /// Stages, gates and bounds of tracking.
   TrackerOptions tracker;
+  /// Points that are followed from image to image.
+  PointTrackOptions point_tracks;
   /// Minimiser.
   SolverOptions solver;
   /// Ray casting of the background.
@@ -34,7 +37,8 @@ struct PipelineOptions {
   std::string terms =
       "point_to_plane(weight=1,loss=tukey,scale=0.03) "
       "color(weight=8,loss=huber,scale=0.01) "
-      "live_to_model(weight=1,loss=huber,scale=0.013) arap(weight=8) "
+      "live_to_model(weight=1,loss=huber,scale=0.013) "
+      "tracks(weight=1,loss=huber,scale=0.01) arap(weight=8) "
       "temporal_arap(weight=8)";
   int render_stride = 2;       ///< Model maps hold every n-th pixel.
   bool split_scene = true;     ///< False: one surface holds the whole scene.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
@@ -21,6 +22,7 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
       options_(options),
       segmenter_(std::move(segmenter)),
       splitter_(camera, labels, options.split),
+      point_tracks_(options.point_tracks),
       tracker_(options.tracker, options.solver,
                ParseEnergy(options.terms, registries.terms),
                registries.associations, registries.solvers) {
@@ -41,6 +43,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   PredictMotions();
   Split(prepared, &report);
   if (!surfaces_.empty()) {
+    FollowPoints(&report);
     TrackBackground(&report);
     TrackObjects(&report);
     Fuse(&report);
@@ -93,6 +96,44 @@ void SplitFusion::Split(const PreparedFrame& prepared, FrameReport* report) {
   }
 }
 
+void SplitFusion::FollowPoints(FrameReport* report) {
+  if (options_.point_tracks.spacing == 0) return;
+  const Stopwatch stopwatch;
+  std::set<int> followed;
+  for (const auto& [id, surface] : surfaces_) {
+    if (!surface->is_ray_cast()) followed.insert(id);
+  }
+  point_tracks_.Follow(live_, followed);
+  report->associate_seconds += stopwatch.Seconds();
+}
+
+bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
+                               const Rigid3d& still, Surface* surface,
+                               SurfaceReport* report) {
+  Stopwatch stopwatch;
+  const int id = surface->id();
+  DeformationGraph* graph = surface->mutable_graph();
+  const bool followed =
+      options_.point_tracks.spacing > 0 && !surface->is_ray_cast();
+  std::vector<TrackedPoint> points;
+  if (followed) {
+    points = point_tracks_.Find(id, samples, surface->skinning_index(),
+                                WarpField(*graph), live_,
+                                options_.tracker.non_rigid_distance);
+  }
+  report->track_points = static_cast<int>(points.size());
+  report->associate_seconds += stopwatch.Seconds();
+  const bool tracked =
+      tracker_.Track(samples, points, live_, static_cast<std::uint16_t>(id),
+                     still, graph, report);
+  stopwatch.Restart();
+  if (tracked && followed) {
+    point_tracks_.Begin(id, samples, WarpField(*graph), live_);
+  }
+  report->associate_seconds += stopwatch.Seconds();
+  return tracked;
+}
+
 void SplitFusion::TrackBackground(FrameReport* report) {
   Stopwatch stopwatch;
   Surface& background = *surfaces_.at(0);
@@ -107,8 +148,8 @@ void SplitFusion::TrackBackground(FrameReport* report) {
   surface.render_seconds = stopwatch.Restart();
   const Rigid3d predicted = MeanRigidMotion(background.graph());
   background_state_ =
-      tracker_.Track(samples, live_, 0, predictors_.at(0).velocity().inverse(),
-                     background.mutable_graph(), &surface)
+      TrackSurface(samples, predictors_.at(0).velocity().inverse(), &background,
+                   &surface)
           ? TrackState::kTracked
           : TrackState::kLost;
   // A camera motion moves every surface.
@@ -221,18 +262,18 @@ bool SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
   const Rigid3d still = world_from_camera.inverse() *
                         predictors_.at(surface->id()).velocity().inverse() *
                         world_from_camera;
-  return tracker_.Track(samples, live_,
-                        static_cast<std::uint16_t>(surface->id()), still,
-                        surface->mutable_graph(), report);
+  return TrackSurface(samples, still, surface, report);
 }
 
 bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
+  const PointTracks tracks_before = point_tracks_;
   // Where it was predicted a tracked one has just failed.
   const bool failed = StateOf(surface->id()) == TrackState::kTracked;
   if (!PlaceWhereSeen(surface, report) && failed) return false;
   if (TrackObject(surface, report) && ExplainsItsPixels(report)) return true;
   *surface->mutable_graph() = before;
+  point_tracks_ = tracks_before;
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
   return false;
@@ -291,6 +332,7 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     }
     track.Apply(TrackEvent::kFits);
     object.event = "reanchored";
+    point_tracks_.End(object.id);
     predictors_.erase(object.id);
   }
 }

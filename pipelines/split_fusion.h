@@ -13,6 +13,7 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/split/surface_splitter.h"
 #include "splitfusion/lib/tracking/motion_predictor.h"
+#include "splitfusion/lib/tracking/point_tracks.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/registries.h"
@@ -63,7 +64,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 7;  // Format.
+  static constexpr std::uint32_t kStateVersion = 8;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -78,6 +79,13 @@ class SplitFusion {
  private:
   void PredictMotions();
   void Split(const PreparedFrame& prepared, FrameReport* report);
+  /// Follows points of all surfaces but for a room from the frame before.
+  void FollowPoints(FrameReport* report);
+  /// Moves a surface onto its live pixels from where it is predicted; `still`
+  /// as of SurfaceTracker::Track(). Whether it fits.
+  bool TrackSurface(const std::vector<ModelSample>& samples,
+                    const Rigid3d& still, Surface* surface,
+                    SurfaceReport* report);
   void TrackBackground(FrameReport* report);
   /// Every object on its own and at the same time.
   void TrackObjects(FrameReport* report);
@@ -93,7 +101,6 @@ class SplitFusion {
   /// Shifts a surface to where its live pixels are; whether such a place is
   /// found.
   bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
-  /// Whether it fits.
   bool TrackObject(Surface* surface, SurfaceReport* report);
   /// Tracks a surface that is lost or was occluded from where its live pixels
   /// are; leaves it where it was if that fails.
@@ -120,6 +127,7 @@ class SplitFusion {
   PipelineOptions options_;
   std::shared_ptr<Segmenter> segmenter_;
   SurfaceSplitter splitter_;
+  PointTracks point_tracks_;
   SurfaceTracker tracker_;
   SurfaceMap surfaces_;
   Trajectory trajectory_;

@@ -35,7 +35,7 @@ template <typename Archive>
 void SplitFusion::Serialize(Archive* archive) {
   archive->Section("split fusion");
   ExpectSameCamera(archive, camera_);
-  (*archive)(splitter_, trajectory_, live_.labels, predictors_);
+  (*archive)(splitter_, trajectory_, live_.labels, predictors_, point_tracks_);
   SerializeSurfaces(archive);
 }
 

@@ -11,18 +11,23 @@
 namespace splitfusion {
 namespace {
 
-/// The samples as points of the camera frame under the current warp, carried by
-/// one node: the problem of finding one motion for the whole surface.
+/// A sample as a point of the camera frame under the current warp, carried by
+/// one node: for the problem of finding one motion for the whole surface.
+ModelSample WarpedSample(ModelSample sample, const WarpField& warp) {
+  sample.point = warp.WarpPoint(sample.skinning, sample.point);
+  sample.normal = warp.WarpNormal(sample.skinning, sample.normal);
+  sample.skinning = Skinning();
+  sample.skinning.count = 1;
+  sample.skinning.weights[0] = 1;
+  return sample;
+}
+
 std::vector<ModelSample> WarpedSamples(const std::vector<ModelSample>& samples,
-                                       const DeformationGraph& graph) {
-  const WarpField warp(graph);
-  std::vector<ModelSample> warped = samples;
-  for (ModelSample& sample : warped) {
-    sample.point = warp.WarpPoint(sample.skinning, sample.point);
-    sample.normal = warp.WarpNormal(sample.skinning, sample.normal);
-    sample.skinning = Skinning();
-    sample.skinning.count = 1;
-    sample.skinning.weights[0] = 1;
+                                       const WarpField& warp) {
+  std::vector<ModelSample> warped;
+  warped.reserve(samples.size());
+  for (const ModelSample& sample : samples) {
+    warped.push_back(WarpedSample(sample, warp));
   }
   return warped;
 }
@@ -203,12 +208,13 @@ SurfaceTracker::SurfaceTracker(TrackerOptions options,
 }
 
 bool SurfaceTracker::Track(const std::vector<ModelSample>& samples,
+                           const std::vector<TrackedPoint>& tracks,
                            const LiveView& live, std::uint16_t surface,
                            const Rigid3d& still, DeformationGraph* graph,
                            SurfaceReport* report) const {
   const std::unique_ptr<Associator> associator =
       associations_.Make(options_.association, live, surface);
-  const Target target{live, surface, *associator};
+  const Target target{live, surface, *associator, tracks};
   DeformationGraph predicted = *graph;
   DeformationGraph stayed = predicted;
   Rigid3d back = still;
@@ -279,7 +285,13 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
                                 const Target& target, const Rigid3d& back,
                                 DeformationGraph* graph,
                                 SurfaceReport* report) const {
-  const std::vector<ModelSample> warped = WarpedSamples(samples, *graph);
+  const WarpField warp(*graph);
+  const std::vector<ModelSample> warped = WarpedSamples(samples, warp);
+  std::vector<TrackedPoint> tracks = target.tracks;
+  for (TrackedPoint& point : tracks) {
+    point.model = WarpedSample(point.model, warp);
+  }
+  const Target rigid{target.live, target.surface, target.associator, tracks};
   DeformationGraph motion = MakeRigidGraph(Rigid3d::Identity());
   const std::vector<NodeMotion> before = MakeRigidGraph(back).motions;
   for (const TrackingStage& stage : rigid_stages_) {
@@ -290,7 +302,7 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
     const TrackingStage fitted =
         FittedStage(stage, options_.min_samples, samples);
     for (int round = 0; round < stage.rounds; ++round) {
-      if (RunRound(warped, target, fitted, "rigid", 1.0, before, &motion,
+      if (RunRound(warped, rigid, fitted, "rigid", 1.0, before, &motion,
                    report)) {
         break;
       }
@@ -343,7 +355,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
          options_.keep_radius
              ? StartRadius(report->rounds, name, initial_radius_)
              : initial_radius_,
-         &association.lost},
+         &association.lost, &target.tracks},
         graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

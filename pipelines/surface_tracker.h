@@ -88,13 +88,15 @@ class SurfaceTracker {
                  const SolverRegistry& solvers = BuiltinSolvers());
 
   /// Moves the graph, which comes in at the predicted motions, so that the
-  /// samples lie on the live pixels of `surface`. `still` is the rigid motion
-  /// of the camera frame that takes the prediction back to where the surface
-  /// was: tracking starts there unless the prediction fits clearly better, so
-  /// that a motion which the data do not determine does not carry itself on. A
-  /// frame that fails leaves the graph where tracking started; the report says
-  /// why. Returns whether it succeeded.
-  bool Track(const std::vector<ModelSample>& samples, const LiveView& live,
+  /// samples lie on the live pixels of `surface`, and its points that were
+  /// followed where they are seen, as far as the energy asks. `still` is the
+  /// rigid motion of the camera frame that takes the prediction back to where
+  /// the surface was: tracking starts there unless the prediction fits clearly
+  /// better, so that a motion which the data do not determine does not carry
+  /// itself on. A frame that fails leaves the graph where tracking started; the
+  /// report says why. Returns whether it succeeded.
+  bool Track(const std::vector<ModelSample>& samples,
+             const std::vector<TrackedPoint>& tracks, const LiveView& live,
              std::uint16_t surface, const Rigid3d& still,
              DeformationGraph* graph, SurfaceReport* report) const;
 
@@ -104,6 +106,7 @@ class SurfaceTracker {
     const LiveView& live;
     std::uint16_t surface;
     const Associator& associator;
+    const std::vector<TrackedPoint>& tracks;
   };
 
   double Misfit(const std::vector<ModelSample>& samples, const Target& target,

@@ -61,10 +61,10 @@ def files():
 
 
 def option_fields(texts):
-    """Fields that a List(OptionList*) names, and the lines of these."""
+    """Fields that a List...(OptionList*) names, and the lines of these."""
     fields, lines = set(), set()
     for path, text in texts.items():
-        for body in re.finditer(r"::List\(OptionList\* list\) \{.*?^\}", text,
+        for body in re.finditer(r"::List\w*\(OptionList\* list\) \{.*?^\}", text,
                                 re.M | re.S):
             fields.update(re.findall(r"&(?:\w+\.)*(\w+)", body[0]))
             first = text.count("\n", 0, body.start()) + 1

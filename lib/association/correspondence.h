@@ -39,6 +39,16 @@ struct Correspondence {
   Eigen::Vector2f intensity_gradient = Eigen::Vector2f::Zero();
 };
 
+/// A model point and where it is seen now because it was followed there from
+/// image to image, see PointTracks.
+struct TrackedPoint {
+  /// The model point, canonical, with its skinning.
+  ModelSample model;
+  /// Live point at the pixel where it is seen, camera frame, metres.
+  Eigen::Vector3f target = Eigen::Vector3f::Zero();
+  float weight = 1;  ///< Confidence, as Correspondence::weight.
+};
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_ASSOCIATION_CORRESPONDENCE_H_

@@ -37,6 +37,9 @@ struct EnergyInput {
   /// Pairs of what the correspondences leave over, see Association::lost; null
   /// where a problem is solved without them.
   const std::vector<Correspondence>* lost = nullptr;
+  /// Model points and where point tracks have followed them to, see
+  /// PointTracks; null where a problem is solved without them.
+  const std::vector<TrackedPoint>* tracks = nullptr;
 };
 
 /// One term of the energy (SplitFusion Eq. 4).

@@ -71,6 +71,8 @@ struct SurfaceProblem {
   double initial_radius = 0;
   /// As `live`.
   const std::vector<Correspondence>* lost = nullptr;
+  /// As `live`.
+  const std::vector<TrackedPoint>* tracks = nullptr;
 };
 
 /// A way to minimise energies. Minimize() may run on several threads at once.

@@ -12,7 +12,7 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
                                           const DeformationGraph& graph) {
   const EnergyInput input{graph,        problem.correspondences, problem.camera,
                           problem.live, problem.before,          problem.anneal,
-                          problem.lost};
+                          problem.lost, problem.tracks};
   std::vector<ProblemTerm> terms;
   WarpedPointsCache cache;
   for (const WeightedTerm& weighted : problem.energy) {

@@ -55,6 +55,7 @@ void to_json(Json& json, const SurfaceReport& surface) {
           {"kind", ToString(surface.kind)},
           {"state", ToString(surface.state)},
           {"event", surface.event},
+          {"track_points", surface.track_points},
           {"refuted_nodes", surface.refuted_nodes},
           {"reason", surface.reason},
           {"pixels", surface.pixels},

@@ -79,7 +79,7 @@ Tracked TrackCorner(const std::string& association, const std::string& solver,
   DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   Tracked tracked;
   tracked.succeeded =
-      tracker.Track(SamplesOf(View(CornerDepth(Rigid3d::Identity()))),
+      tracker.Track(SamplesOf(View(CornerDepth(Rigid3d::Identity()))), {},
                     View(CornerDepth(motion)), 0, Rigid3d::Identity(), &graph,
                     &tracked.report);
   tracked.error =

@@ -19,7 +19,7 @@ struct CornerTracking {
                           const TrackerOptions& options = {}) {
     const LiveView live = View(CornerDepth(motion));
     tracked = MakeTracker(options).Track(
-        SamplesOf(View(CornerDepth(Rigid3d::Identity()))), live, 0,
+        SamplesOf(View(CornerDepth(Rigid3d::Identity()))), {}, live, 0,
         Rigid3d::Identity(), &graph, &report);
   }
   bool tracked = false;
@@ -50,8 +50,7 @@ TEST(SurfaceTracker, ALostFrameKeepsTheMotion) {
   const Rigid3d motion = MakeMotion({0, 0, 0}, {0.03, 0, 0.02});
   const CornerTracking moved(motion, options);
   EXPECT_FALSE(moved.tracked);
-  EXPECT_NE(moved.report.reason.find("m from its start"),
-            std::string::npos)
+  EXPECT_NE(moved.report.reason.find("m from its start"), std::string::npos)
       << moved.report.reason;
   EXPECT_EQ(moved.graph.motions[0].translation, Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(moved.graph.motions[0].rotation, Eigen::Matrix3d::Identity());
@@ -70,12 +69,12 @@ TEST(SurfaceTracker, TooFewPointsAreNoTrack) {
   live.labels.setTo(7);
   DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   SurfaceReport report;
-  EXPECT_FALSE(MakeTracker().Track(samples, live, 0, Rigid3d::Identity(),
+  EXPECT_FALSE(MakeTracker().Track(samples, {}, live, 0, Rigid3d::Identity(),
                                    &graph, &report));
   EXPECT_EQ(report.reason.find("only 0 correspondences"), 0u) << report.reason;
   report = SurfaceReport();
-  EXPECT_FALSE(
-      MakeTracker().Track({}, live, 0, Rigid3d::Identity(), &graph, &report));
+  EXPECT_FALSE(MakeTracker().Track({}, {}, live, 0, Rigid3d::Identity(), &graph,
+                                   &report));
   EXPECT_FALSE(report.reason.empty());
 }
 
@@ -89,8 +88,8 @@ TEST(SurfaceTracker, AModelThatHardlyFitsIsNoTrack) {
   }
   DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   SurfaceReport report;
-  EXPECT_FALSE(MakeTracker().Track(samples, View(depth), 0, Rigid3d::Identity(),
-                                   &graph, &report));
+  EXPECT_FALSE(MakeTracker().Track(samples, {}, View(depth), 0,
+                                   Rigid3d::Identity(), &graph, &report));
   EXPECT_NE(report.reason.find("model points fit the depth"), std::string::npos)
       << report.reason;
 }
@@ -104,7 +103,7 @@ TEST(SurfaceTracker, AnObjectThatIsMostlyElsewhereIsNoTrack) {
         .setTo(id);
     SurfaceReport report;
     const bool tracked = MakeTracker().Track(
-        sheet.samples, sheet.live, static_cast<std::uint16_t>(id),
+        sheet.samples, {}, sheet.live, static_cast<std::uint16_t>(id),
         Rigid3d::Identity(), &sheet.graph, &report);
     return (tracked ? "tracked: " : "lost: ") + report.reason;
   };
@@ -123,7 +122,7 @@ TEST(SurfaceTracker, StartsFromThePredictionIfThatFitsBetter) {
   DeformationGraph graph = MakeRigidGraph(MakeMotion({0, 0, 0}, {0, 0, 0.24}));
   SurfaceReport report;
   EXPECT_TRUE(MakeTracker().Track(
-      SamplesOf(View(CornerDepth(Rigid3d::Identity()))), live, 0,
+      SamplesOf(View(CornerDepth(Rigid3d::Identity()))), {}, live, 0,
       MakeMotion({0, 0, 0}, {0, 0, -0.24}), &graph, &report))
       << report.reason;
   EXPECT_LT(
@@ -136,17 +135,38 @@ TEST(SurfaceTracker, DoesNotFollowAPredictionThatFitsWorse) {
   DeformationGraph graph =
       MakeRigidGraph(MakeMotion({0, 0, 0}, {0.05, 0, 0.25}));
   SurfaceReport report;
-  EXPECT_TRUE(MakeTracker().Track(SamplesOf(live), live, 0,
+  EXPECT_TRUE(MakeTracker().Track(SamplesOf(live), {}, live, 0,
                                   MakeMotion({0, 0, 0}, {-0.05, 0, -0.25}),
                                   &graph, &report))
       << report.reason;
   EXPECT_LT(MeanRigidMotion(graph).translation().norm(), 0.001);
 }
 
+TEST(SurfaceTracker, PointsThatWereFollowedHoldASurfaceAlongItself) {
+  const LiveView live =
+      View(PlaneDepth(Camera(), -Eigen::Vector3d::UnitZ(), -1.0));
+  const std::vector<ModelSample> samples = SamplesOf(live);
+  std::vector<TrackedPoint> points;
+  for (std::size_t i = 0; i < samples.size(); i += 50) {
+    points.push_back(
+        {samples[i], samples[i].point + Eigen::Vector3f(0.02f, -0.01f, 0), 1});
+  }
+  const auto moved = [&](const std::string& terms) -> Eigen::Vector3d {
+    DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+    SurfaceReport report;
+    EXPECT_TRUE(MakeTracker({}, terms).Track(
+        samples, points, live, 0, Rigid3d::Identity(), &graph, &report))
+        << report.reason;
+    return MeanRigidMotion(graph).translation();
+  };
+  EXPECT_LT(moved("").norm(), 1e-6);
+  EXPECT_LT((moved("tracks") - Eigen::Vector3d(0.02, -0.01, 0)).norm(), 1e-4);
+}
+
 TEST(SurfaceTracker, BendsANonRigidSurfaceOntoTheDepth) {
   BendingSheet sheet;
   SurfaceReport report;
-  ASSERT_TRUE(MakeTracker().Track(sheet.samples, sheet.live, 0,
+  ASSERT_TRUE(MakeTracker().Track(sheet.samples, {}, sheet.live, 0,
                                   Rigid3d::Identity(), &sheet.graph, &report))
       << report.reason;
   const WarpField warp(sheet.graph);
@@ -206,9 +226,9 @@ double ErrorOfSwungArm(const std::string& terms, SurfaceReport* report) {
   };
   std::vector<ModelSample> samples = SamplesOf(view(rest), 1);
   for (ModelSample& s : samples) s.skinning = index.Skin(s.point);
-  EXPECT_TRUE(
-      MakeTracker(TrackerOptions(), terms)
-          .Track(samples, view(swung), 1, Rigid3d::Identity(), &graph, report))
+  EXPECT_TRUE(MakeTracker(TrackerOptions(), terms)
+                  .Track(samples, {}, view(swung), 1, Rigid3d::Identity(),
+                         &graph, report))
       << report->reason;
   const WarpField warp(graph);
   double sum = 0;

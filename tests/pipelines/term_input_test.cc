@@ -63,7 +63,7 @@ TEST(TermInput, ATermMayHoldARigidSurfaceWhereItWas) {
   const auto moved = [&](const SurfaceTracker& tracker) {
     DeformationGraph graph = MakeRigidGraph(motion);
     SurfaceReport report;
-    tracker.Track(samples, live, 0, motion.inverse(), &graph, &report);
+    tracker.Track(samples, {}, live, 0, motion.inverse(), &graph, &report);
     EXPECT_EQ(ToString(report.state), "tracked") << report.reason;
     return graph.motions[0].translation.norm();
   };
@@ -102,7 +102,8 @@ TEST(TermInput, TheTrustRegionOfARoundGoesOnFromTheRoundBefore) {
   DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   SurfaceReport report;
   MakeTracker(TrackerOptions(), "valley(weight=1)", terms)
-      .Track(SamplesOf(live), live, 0, Rigid3d::Identity(), &graph, &report);
+      .Track(SamplesOf(live), {}, live, 0, Rigid3d::Identity(), &graph,
+             &report);
   const double first = SolverOptions().initial_radius;
   ASSERT_GT(report.rounds.size(), 1u);
   double radius = first;
@@ -140,8 +141,8 @@ TEST(TermInput, ATermIsToldTheAnnealing) {
   BendingSheet sheet;
   SurfaceReport report;
   MakeTracker(options, "notes(weight=1)", terms)
-      .Track(sheet.samples, sheet.live, 0, Rigid3d::Identity(), &sheet.graph,
-             &report);
+      .Track(sheet.samples, {}, sheet.live, 0, Rigid3d::Identity(),
+             &sheet.graph, &report);
   ASSERT_FALSE(notes.empty());
   EXPECT_EQ(notes.front(), 1);  // Of the rigid rounds.
   EXPECT_NEAR(*std::max_element(notes.begin(), notes.end()), 6, 1e-12);
@@ -155,8 +156,8 @@ TEST(TermInput, ATermMayHoldTheNodesWhereTheyWere) {
     const DeformationGraph rest = sheet.graph;
     ApplyRigidMotion(motion, &sheet.graph);  // The prediction.
     SurfaceReport report;
-    tracker.Track(sheet.samples, sheet.live, 0, motion.inverse(), &sheet.graph,
-                  &report);
+    tracker.Track(sheet.samples, {}, sheet.live, 0, motion.inverse(),
+                  &sheet.graph, &report);
     EXPECT_EQ(ToString(report.state), "tracked") << report.reason;
     double distance = 0;
     for (int i = 0; i < rest.size(); ++i) {

@@ -1,0 +1,64 @@
+#ifndef SPLITFUSION_COST_FUNCTIONS_TRACKS_H_
+#define SPLITFUSION_COST_FUNCTIONS_TRACKS_H_
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+#include "splitfusion/lib/energy/energy_term.h"
+
+namespace splitfusion {
+
+/// Distance of a warped model point, across the view, from where its point
+/// track is seen:
+///
+///   r = sqrt(c) z_t [ pi(x) - pi(v_t) ]
+///
+/// x is the warped model point (Eq. 2), pi(x) = (x_1, x_2) / x_3, v_t the live
+/// point where the track is seen, z_t its depth and c the confidence of that.
+/// Of depth nothing is asked, which is what Eq. 5 does.
+///
+/// Residuals: 2, metres * sqrt(confidence).
+struct TrackDistance {
+  /// Residuals of one point.
+  static constexpr int kResiduals = 2;  // Layout.
+  Eigen::Vector3d target;               ///< v_t, camera frame, metres.
+  double sqrt_confidence = 1;           ///< sqrt(c).
+
+  /// `x`: warped point, camera frame, metres.
+  template <typename T>
+  bool operator()(const T* x, T* residual) const {
+    const T scale = T(sqrt_confidence * target.z());
+    residual[0] = scale * (x[0] / x[2] - T(target.x() / target.z()));
+    residual[1] = scale * (x[1] / x[2] - T(target.y() / target.z()));
+    return true;
+  }
+};
+
+/// Holds a surface along itself by long point tracks, see PointTracks: where
+/// Eq. 5 lets it slide, and where colours repeat themselves. Not in the paper.
+///
+/// As of LiveToModelTerm, the sum over all tracks is divided by the sum of
+/// their confidences and of those of the correspondences.
+class TracksTerm : public EnergyTerm {
+ public:
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    if (input.tracks == nullptr) return;
+    std::vector<const ModelSample*> samples;
+    std::vector<TrackDistance> functors;
+    double total = 0;
+    for (const Correspondence& c : input.correspondences) total += c.weight;
+    for (const TrackedPoint& point : *input.tracks) {
+      samples.push_back(&point.model);
+      functors.push_back(
+          {point.target.cast<double>(), std::sqrt(point.weight)});
+      total += point.weight;
+    }
+    sink->AddWarpedPoints(samples, functors, total);
+  }
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_COST_FUNCTIONS_TRACKS_H_

@@ -1,0 +1,88 @@
+#include "splitfusion/cost_functions/tracks.h"
+
+#include <gtest/gtest.h>
+
+#include "splitfusion/lib/energy/warp_functor.h"
+#include "support/gradient_check.h"
+#include "support/sample_correspondences.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+#include "support/term_energy.h"
+
+namespace splitfusion {
+namespace {
+
+const TermOptions kOptions{"tracks", 1, LossKind::kTrivial, 0.01};
+
+Eigen::Vector2d Value(const TrackDistance& track, const Eigen::Vector3d& x) {
+  Eigen::Vector2d residual;
+  track(x.data(), residual.data());
+  return residual;
+}
+
+TEST(TrackDistance, IsTheWayAcrossTheView) {
+  const Eigen::Vector3d target(0.2, -0.1, 2);
+  const Eigen::Vector3d x = target + Eigen::Vector3d(0.03, -0.04, 0);
+  EXPECT_TRUE(Value({target, 1}, x).isApprox(Eigen::Vector2d(0.03, -0.04)));
+  EXPECT_TRUE(Value({target, 0.5}, x).isApprox(Eigen::Vector2d(0.015, -0.02)));
+}
+
+TEST(TrackDistance, AsksNothingOfDepth) {
+  const Eigen::Vector3d target(0.2, -0.1, 2);
+  for (const double stretch : {0.5, 0.9, 3.0}) {
+    EXPECT_LT(Value({target, 1}, stretch * target).norm(), 1e-12);
+  }
+}
+
+TEST(TrackDistance, GradientsMatchNumeric) {
+  DeformationGraph graph = CoverWithNodes(PlateMesh(0.2, 0.2, 0.01, 1), 0.04);
+  Shake(0.05, /*seed=*/1, &graph);
+  const Eigen::Vector3f point(0.11f, -0.07f, 1);
+  const Skinning skinning = SkinningIndex(graph, 6).Skin(point);
+  const auto cost =
+      AutoDiffOverTwists(WarpFunctor<TrackDistance>(graph, skinning, point,
+                                                    {{0.1, -0.06, 1.1}, 0.7}),
+                         skinning.count, 2);
+  for (const double size : {0.0, 0.01, 0.3}) {
+    EXPECT_GRADIENTS_MATCH(*cost,
+                           RandomTwists(skinning.count, size, /*seed=*/2));
+  }
+}
+
+std::vector<TrackedPoint> PointsOf(const std::vector<Correspondence>& pairs) {
+  std::vector<TrackedPoint> points;
+  for (const Correspondence& pair : pairs) {
+    points.push_back({pair.model, pair.target, pair.weight});
+  }
+  return points;
+}
+
+std::vector<Correspondence> PlateMovedBy(const Eigen::Vector3d& way) {
+  return PerfectAssociation(
+      PlateMesh(0.1, 0.1, 0.02, 1), MakeRigidGraph(Rigid3d::Identity()),
+      [&](const Eigen::Vector3d& p) -> Eigen::Vector3d { return p + way; });
+}
+
+TEST(TracksTerm, ATrackIsWorthACorrespondence) {
+  const std::vector<Correspondence> found = PlateMovedBy({0, 0, 0});
+  std::vector<TrackedPoint> tracks = PointsOf(PlateMovedBy({0.03, 0.04, 0}));
+  tracks.resize(tracks.size() / 3);
+  EnergyInput input{MakeRigidGraph(Rigid3d::Identity()), found,
+                    PinholeCamera()};
+  input.tracks = &tracks;
+  const AddedResiduals added = ResidualsOf(TracksTerm(), input, kOptions);
+  EXPECT_EQ(added.residual_vectors, static_cast<int>(tracks.size()));
+  EXPECT_NEAR(EnergyOf(MakeRigidGraph(Rigid3d::Identity()), added.residuals),
+              25.0 * tracks.size() / (found.size() + tracks.size()), 1e-3);
+}
+
+TEST(TracksTerm, IsNothingWithoutTracks) {
+  const std::vector<Correspondence> found = PlateMovedBy({0.1, 0, 0});
+  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  EXPECT_EQ(ResidualsOf(TracksTerm(), {graph, found, PinholeCamera()}, kOptions)
+                .residual_vectors,
+            0);
+}
+
+}  // namespace
+}  // namespace splitfusion
