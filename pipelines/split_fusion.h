@@ -79,7 +79,8 @@ class SplitFusion {
  private:
   void PredictMotions();
   void Split(const PreparedFrame& prepared, FrameReport* report);
-  /// Follows points of all surfaces but for a room from the frame before.
+  /// Follows points of all surfaces, but of a background that is ray cast, from
+  /// the frame before.
   void FollowPoints(FrameReport* report);
   /// Moves a surface onto its live pixels from where it is predicted; `still`
   /// as of SurfaceTracker::Track(). Whether it fits.
