@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -249,6 +250,36 @@ TEST(SplitFusion, IsFoundAgainOnlyIfItExplainsItsPixels) {
   EXPECT_NE(Find(back, person)->reason.find("model points for"),
             std::string::npos)
       << Find(back, person)->reason;
+  // Points of where it was not believed to be are not followed.
+  const FrameReport after = run.Next();
+  EXPECT_EQ(StateOf(after, person), "lost");
+  EXPECT_LE(Find(after, person)->track_points,
+            Find(back, person)->track_points);
+}
+
+TEST(SplitFusion, FollowsPointsOfThePersonUnlessToldNotTo) {
+  for (const int spacing : {8, 0}) {
+    SyntheticOptions scene = SyntheticRun::Quick();
+    scene.width = 320, scene.height = 240;
+    PipelineOptions options;
+    options.point_tracks.spacing = spacing;
+    SyntheticRun run(scene, options);
+    FrameReport report;
+    for (int i = 0; i < 5; ++i) report = run.Next();
+    const SurfaceReport& person = *Find(report, PersonId(run.fusion()));
+    EXPECT_EQ(Find(report, 0)->track_points, 0);
+    if (spacing == 0) {
+      EXPECT_EQ(person.track_points, 0);
+      continue;
+    }
+    // Most of one in every cell of what is seen of him.
+    EXPECT_GT(person.track_points, 0.3 * person.pixels / (spacing * spacing));
+    const std::vector<TermCost>& terms = person.rounds.back().solver.terms;
+    EXPECT_TRUE(
+        std::any_of(terms.begin(), terms.end(), [](const TermCost& term) {
+          return term.term == "tracks" && term.residual_vectors > 0;
+        }));
+  }
 }
 
 TEST(SplitFusion, HiddenSurfacesComeBackAtAnyMinimum) {
