@@ -196,8 +196,10 @@ bool Collect(const std::string& baseline_flag) {
   std::cout << PrintedSummary(table, groups, TerminalWidth());
   if (!baseline.empty()) {
     const auto differences = CompareWithBaseline(table, baseline);
-    files.push_back(DifferencesTable(table, differences.groups));
+    files.push_back(DifferencesTable(table, differences));
+    files.push_back(EffectsTable(table, differences));
     WriteCsv(folder.Below("differences.csv"), files[2]);
+    WriteCsv(folder.Below("effects.csv"), files[3]);
     std::cout << '\n'
               << PrintedDifferences(table, differences, baseline,
                                     TerminalWidth());

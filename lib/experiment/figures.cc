@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
@@ -66,6 +67,18 @@ std::size_t FigureColumn(const std::string& name) {
     throw std::logic_error(name + " is no figure");
   }
   return static_cast<std::size_t>(found - kFigureNames.begin());
+}
+
+bool IsRatio(std::size_t figure) {
+  constexpr std::array<std::string_view, 6> kDifferences = {
+      "frames",  "lost_frames", "f_score_seen",
+      "missing", "stretched",   "ghosts"};
+  return std::find(kDifferences.begin(), kDifferences.end(),
+                   kFigureNames[figure]) == kDifferences.end();
+}
+
+double EffectOn(std::size_t figure, double value, double baseline) {
+  return IsRatio(figure) ? std::log(value / baseline) : value - baseline;
 }
 
 Figures ReadFigures(const std::string& run, bool evaluated) {

@@ -31,6 +31,13 @@ inline constexpr std::array<const char*, 16> kFigureNames = {
 /// Place of a name in kFigureNames.
 std::size_t FigureColumn(const std::string& name);
 
+/// Effect on a figure, by its place: the log ratio to that of the baseline, or,
+/// of shares and counts, which may be 0, the difference.
+double EffectOn(std::size_t figure, double value, double baseline);
+
+/// Whether the effect is a log ratio.
+bool IsRatio(std::size_t figure);
+
 /// Figures of one run, by kFigureNames; NaN where there is none.
 struct Figures {
   /// All unknown.

@@ -18,30 +18,34 @@ using Lines = std::vector<std::string>;
 
 /// How a figure is shown.
 struct Shown {
-  const char* name;  ///< One of kFigureNames.
-  const char* head;  ///< Of the column.
-  double factor;     ///< From SI to the column's unit.
-  int decimals;      ///< Behind the point.
+  const char* name;    ///< One of kFigureNames.
+  const char* head;    ///< Of the column.
+  double factor;       ///< From SI to the column's unit.
+  int decimals;        ///< Behind the point.
+  const char* effect;  ///< Head of the column of effects, points or percent.
 };
+
+/// What the lines of a table are.
+enum class Lined { kMeans, kDifferences, kEffects };
 
 /// In this order where they tell equally much.
 constexpr std::array<Shown, 16> kShown = {{
-    {"f_score_seen", "F seen %", 100, 1},
-    {"ate_m", "ATE mm", 1000, 2},
-    {"missing", "missing %", 100, 1},
-    {"stretched", "stretched %", 100, 2},
-    {"ghosts", "ghosts %", 100, 2},
-    {"surface_error_m", "surface mm", 1000, 1},
-    {"tracks_mean_m", "tracks mm", 1000, 1},
-    {"view_error_m", "view mm", 1000, 1},
-    {"lost_frames", "lost frames", 1, 1},
-    {"seconds_per_frame", "s/frame", 1, 3},
-    {"rpe_m", "RPE mm", 1000, 2},
-    {"rpe_deg", "RPE deg", 1, 3},
-    {"tracks_median_m", "tracks median mm", 1000, 1},
-    {"cpu_seconds_per_frame", "CPU s/frame", 1, 3},
-    {"peak_memory_bytes", "memory MB", 1e-6, 0},
-    {"frames", "frames", 1, 0},
+    {"f_score_seen", "F seen %", 100, 1, "F seen pt"},
+    {"ate_m", "ATE mm", 1000, 2, "ATE %"},
+    {"missing", "missing %", 100, 1, "missing pt"},
+    {"stretched", "stretched %", 100, 2, "stretched pt"},
+    {"ghosts", "ghosts %", 100, 2, "ghosts pt"},
+    {"surface_error_m", "surface mm", 1000, 1, "surface %"},
+    {"tracks_mean_m", "tracks mm", 1000, 1, "tracks %"},
+    {"view_error_m", "view mm", 1000, 1, "view %"},
+    {"lost_frames", "lost frames", 1, 1, "lost frames"},
+    {"seconds_per_frame", "s/frame", 1, 3, "s/frame %"},
+    {"rpe_m", "RPE mm", 1000, 2, "RPE %"},
+    {"rpe_deg", "RPE deg", 1, 3, "RPE angle %"},
+    {"tracks_median_m", "tracks median mm", 1000, 1, "tracks median %"},
+    {"cpu_seconds_per_frame", "CPU s/frame", 1, 3, "CPU %"},
+    {"peak_memory_bytes", "memory MB", 1e-6, 0, "memory %"},
+    {"frames", "frames", 1, 0, "frames"},
 }};
 
 /// A column of the table.
@@ -101,13 +105,13 @@ double PooledDeviation(const std::vector<ResultGroup>& groups,
 /// The greatest difference to the baseline, or between two groups of a
 /// sequence.
 double LargestEffect(const std::vector<ResultGroup>& groups, std::size_t index,
-                     bool differences) {
+                     Lined lined) {
   std::map<std::string, std::pair<double, double>> ranges;
   double effect = 0;
   for (const ResultGroup& group : groups) {
     const double mean = group.figures[index].mean;
     if (!std::isfinite(mean)) continue;
-    const double first = differences ? 0 : mean;
+    const double first = lined == Lined::kMeans ? mean : 0;
     auto& [low, high] =
         ranges.try_emplace(group.sequence, first, first).first->second;
     low = std::min(low, mean);
@@ -120,20 +124,29 @@ double LargestEffect(const std::vector<ResultGroup>& groups, std::size_t index,
 /// How much a figure tells: its effect in scatters. Without a scatter an effect
 /// is more than none.
 double Telling(const std::vector<ResultGroup>& groups, std::size_t index,
-               bool differences) {
-  const double effect = LargestEffect(groups, index, differences);
+               Lined lined) {
+  const double effect = LargestEffect(groups, index, lined);
   const double deviation = PooledDeviation(groups, index);
   if (effect == 0) return 0;
   return std::isfinite(deviation) ? effect / deviation : 1;
 }
 
+/// As the effect on the figure is shown: of one decimal, in percent or points.
+Shown Effect(Shown shown) {
+  constexpr double kPercent = 100;
+  if (IsRatio(FigureColumn(shown.name))) shown.factor = kPercent;
+  shown.head = shown.effect;
+  shown.decimals = 1;
+  return shown;
+}
+
 /// The figures in the order in which they are shown.
 std::vector<Shown> InOrder(const std::vector<ResultGroup>& groups,
-                           bool differences) {
+                           Lined lined) {
   std::vector<std::pair<double, Shown>> order;
   for (const Shown& shown : kShown) {
-    order.emplace_back(Telling(groups, FigureColumn(shown.name), differences),
-                       shown);
+    order.emplace_back(Telling(groups, FigureColumn(shown.name), lined),
+                       lined == Lined::kEffects ? Effect(shown) : shown);
   }
   std::stable_sort(
       order.begin(), order.end(),
@@ -145,18 +158,19 @@ std::vector<Shown> InOrder(const std::vector<ResultGroup>& groups,
 
 /// The head of a figure's column; the unit is SI's multiple.
 std::vector<Column> FigureColumns(const std::vector<ResultGroup>& groups,
-                                  bool differences) {
+                                  Lined lined) {
   std::vector<Column> columns;
-  for (const Shown& shown : InOrder(groups, differences)) {
+  for (const Shown& shown : InOrder(groups, lined)) {
     const std::size_t index = FigureColumn(shown.name);
     Column column{shown.head, {}, false};
     bool known = false;
     for (const ResultGroup& group : groups) {
       const Spread& spread = group.figures[index];
       known = known || spread.count > 0;
+      const bool compared = lined != Lined::kMeans;
       const double scatter =
-          differences ? spread.StandardError() : spread.standard_deviation;
-      column.cells.push_back(SpreadText(spread, scatter, shown, differences));
+          compared ? spread.StandardError() : spread.standard_deviation;
+      column.cells.push_back(SpreadText(spread, scatter, shown, compared));
     }
     if (known) columns.push_back(column);
   }
@@ -290,6 +304,20 @@ std::string Fitted(std::vector<Column> columns,
   return text + Wrapped("Not shown (in the files): " + names + ".", width);
 }
 
+/// Lines of a comparison, with the seconds of a run.
+std::string ComparedLines(const ResultTable& table,
+                          const std::vector<ResultGroup>& groups, Lined lined,
+                          std::size_t width) {
+  std::vector<Column> names = NameColumns(table, groups, /*all_keys=*/true);
+  Column seconds{"s/run", {}, false};
+  for (const ResultGroup& group : groups) {
+    seconds.cells.push_back(
+        group.seconds.count == 0 ? "-" : Number(group.seconds.mean, 1, false));
+  }
+  names.push_back(seconds);
+  return Fitted(names, FigureColumns(groups, lined), width);
+}
+
 }  // namespace
 
 std::string PrintedSummary(const ResultTable& table,
@@ -299,9 +327,8 @@ std::string PrintedSummary(const ResultTable& table,
   const bool repeated =
       std::any_of(groups.begin(), groups.end(),
                   [](const ResultGroup& group) { return group.planned > 1; });
-  std::string text =
-      Fitted(NameColumns(table, groups, /*all_keys=*/false),
-             FigureColumns(groups, /*differences=*/false), width);
+  std::string text = Fitted(NameColumns(table, groups, /*all_keys=*/false),
+                            FigureColumns(groups, Lined::kMeans), width);
   if (repeated) {
     text += Wrapped("Mean +- standard deviation over n repeats.", width);
   }
@@ -323,19 +350,19 @@ std::string PrintedDifferences(const ResultTable& table,
     return Wrapped("Nothing to compare with " + baseline + ".", width) +
            unpaired;
   }
-  std::vector<Column> names = NameColumns(table, groups, /*all_keys=*/true);
-  Column seconds{"s/run", {}, false};
-  for (const ResultGroup& group : groups) {
-    seconds.cells.push_back(
-        group.seconds.count == 0 ? "-" : Number(group.seconds.mean, 1, false));
-  }
-  names.push_back(seconds);
-  return Wrapped("Differences to " + baseline +
-                     ", run by run of the same sequence and repeat: mean +- "
-                     "standard error.",
-                 width) +
-         Fitted(names, FigureColumns(groups, /*differences=*/true), width) +
-         unpaired;
+  const std::string differences =
+      Wrapped("Differences to " + baseline +
+                  ", run by run of the same sequence and repeat: mean +- "
+                  "standard error.",
+              width) +
+      ComparedLines(table, groups, Lined::kDifferences, width) + unpaired;
+  if (comparison.effects.empty()) return differences;
+  return differences + "\n" +
+         Wrapped(
+             "Effects over the sequences: mean +- standard error of the "
+             "log ratio, of shares and counts of the difference.",
+             width) +
+         ComparedLines(table, comparison.effects, Lined::kEffects, width);
 }
 
 }  // namespace splitfusion

@@ -18,7 +18,8 @@ std::string PrintedSummary(const ResultTable& table,
                            std::size_t width);
 
 /// The same of differences to a baseline, with standard errors; the largest
-/// difference counts. A line tells of runs that were not compared.
+/// difference counts. A line tells of runs that were not compared. Then the
+/// effects over all sequences, ratios as 100 times their logarithm.
 std::string PrintedDifferences(const ResultTable& table,
                                const Comparison& comparison,
                                const std::string& baseline, std::size_t width);

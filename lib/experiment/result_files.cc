@@ -126,6 +126,31 @@ void WriteDatabase(const std::string& path,
   Execute(opened, "COMMIT");
 }
 
+/// Groups of a comparison; columns of means have this suffix.
+FileTable ComparisonTable(const std::string& name, const std::string& suffix,
+                          const ResultTable& table,
+                          const std::vector<ResultGroup>& groups) {
+  FileTable file{name, Columns({"sequence"}, table), {}};
+  for (const char* column : {"n", "seconds_per_run"}) {
+    file.columns.emplace_back(column);
+  }
+  for (const std::string figure : kFigureNames) {
+    file.columns.push_back(figure + suffix);
+    file.columns.push_back(figure + "_se");
+  }
+  for (const ResultGroup& group : groups) {
+    std::vector<Cell> cells = Cells({group.sequence}, group.values);
+    cells.emplace_back(group.runs);
+    cells.emplace_back(group.seconds.mean);
+    for (const Spread& spread : group.figures) {
+      cells.emplace_back(spread.mean);
+      cells.emplace_back(spread.StandardError());
+    }
+    file.rows.push_back(std::move(cells));
+  }
+  return file;
+}
+
 }  // namespace
 
 Cell::Cell(std::string value) : text(std::move(value)) {
@@ -182,26 +207,13 @@ FileTable SummaryTable(const ResultTable& table,
 }
 
 FileTable DifferencesTable(const ResultTable& table,
-                           const std::vector<ResultGroup>& groups) {
-  FileTable file{"differences", Columns({"sequence"}, table), {}};
-  for (const char* name : {"n", "seconds_per_run"}) {
-    file.columns.emplace_back(name);
-  }
-  for (const std::string name : kFigureNames) {
-    file.columns.push_back(name + "_difference");
-    file.columns.push_back(name + "_se");
-  }
-  for (const ResultGroup& group : groups) {
-    std::vector<Cell> cells = Cells({group.sequence}, group.values);
-    cells.emplace_back(group.runs);
-    cells.emplace_back(group.seconds.mean);
-    for (const Spread& spread : group.figures) {
-      cells.emplace_back(spread.mean);
-      cells.emplace_back(spread.StandardError());
-    }
-    file.rows.push_back(std::move(cells));
-  }
-  return file;
+                           const Comparison& comparison) {
+  return ComparisonTable("differences", "_difference", table,
+                         comparison.groups);
+}
+
+FileTable EffectsTable(const ResultTable& table, const Comparison& comparison) {
+  return ComparisonTable("effects", "_effect", table, comparison.effects);
 }
 
 void WriteCsv(const std::string& path, const FileTable& table) {

@@ -41,7 +41,10 @@ FileTable SummaryTable(const ResultTable& table,
 /// `differences` of CompareWithBaseline(): sequence, the varied keys, n, and of
 /// every figure NAME_difference and NAME_se; seconds of a whole run.
 FileTable DifferencesTable(const ResultTable& table,
-                           const std::vector<ResultGroup>& groups);
+                           const Comparison& comparison);
+
+/// `effects` of CompareWithBaseline(): the same, with NAME_effect.
+FileTable EffectsTable(const ResultTable& table, const Comparison& comparison);
 
 /// Writes a CSV file, whole or not at all.
 ///

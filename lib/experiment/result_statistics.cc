@@ -22,16 +22,29 @@ struct Gathered {
   FigureValues values;
   std::vector<double> seconds;
 
-  /// Counts a run, its figures less those of `partner` (null: as they are).
-  void Add(const ResultRow& row, const ResultRow* partner) {
+  /// Counts a run, complete or not, with these figures.
+  void Add(const ResultRow& row, bool complete, const Figures& figures) {
     ++group.planned;
-    if (!row.IsComplete() || (partner && !partner->IsComplete())) return;
+    if (!complete) return;
     ++group.runs;
-    for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
-      values[i].push_back(row.figures.values[i] -
-                          (partner ? partner->figures.values[i] : 0));
-    }
+    AddValues([&](std::size_t i) { return figures.values[i]; });
     seconds.push_back(row.cost.wall_seconds);
+  }
+
+  /// Counts the runs of a group by their means.
+  void Add(const ResultGroup& part) {
+    group.planned += part.planned;
+    group.runs += part.runs;
+    AddValues([&](std::size_t i) { return part.figures[i].mean; });
+    seconds.push_back(part.seconds.mean);
+  }
+
+ private:
+  template <typename ValueOf>
+  void AddValues(const ValueOf& value_of) {
+    for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
+      values[i].push_back(value_of(i));
+    }
   }
 };
 
@@ -193,6 +206,15 @@ const ResultRow* FindPartner(const Settings& baseline,
   return none ? nullptr : found.front();
 }
 
+/// The groups of all sequences as one, by the means of each.
+std::vector<ResultGroup> OverSequences(const std::vector<ResultGroup>& groups) {
+  Groups pooled;
+  for (const ResultGroup& group : groups) {
+    pooled.At(kAllSequences, group.values).Add(group);
+  }
+  return pooled.Describe();
+}
+
 }  // namespace
 
 double Spread::StandardError() const {
@@ -222,7 +244,8 @@ Spread DescribeValues(const std::vector<double>& values) {
 std::vector<ResultGroup> GroupResults(const ResultTable& table) {
   Groups groups;
   for (const ResultRow& row : table.rows) {
-    groups.At(row.task.sequence, row.values).Add(row, nullptr);
+    groups.At(row.task.sequence, row.values)
+        .Add(row, row.IsComplete(), row.figures);
   }
   return groups.Describe();
 }
@@ -239,7 +262,7 @@ Comparison CompareWithBaseline(const ResultTable& table,
   std::set<std::string> sequences;
   for (const ResultRow& row : table.rows) sequences.insert(row.task.sequence);
   Comparison comparison;
-  Groups groups, over_all;
+  Groups groups, effects;
   for (const ResultRow& row : table.rows) {
     if (IsBaseline(row, wanted)) continue;
     const ResultRow* partner = FindPartner(wanted, candidates, row);
@@ -247,13 +270,19 @@ Comparison CompareWithBaseline(const ResultTable& table,
       comparison.unpaired += row.IsComplete() ? 1 : 0;
       continue;
     }
-    groups.At(row.task.sequence, row.values).Add(row, partner);
-    over_all.At(kAllSequences, row.values).Add(row, partner);
+    const bool complete = row.IsComplete() && partner->IsComplete();
+    Figures differences, effect;
+    for (std::size_t i = 0; i < kFigureNames.size(); ++i) {
+      const double value = row.figures.values[i];
+      differences.values[i] = value - partner->figures.values[i];
+      effect.values[i] = EffectOn(i, value, partner->figures.values[i]);
+    }
+    groups.At(row.task.sequence, row.values).Add(row, complete, differences);
+    effects.At(row.task.sequence, row.values).Add(row, complete, effect);
   }
   comparison.groups = groups.Describe();
-  if (sequences.size() < 2) return comparison;
-  for (ResultGroup& group : over_all.Describe()) {
-    comparison.groups.push_back(std::move(group));
+  if (sequences.size() > 1) {
+    comparison.effects = OverSequences(effects.Describe());
   }
   return comparison;
 }

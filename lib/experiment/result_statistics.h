@@ -45,8 +45,10 @@ void CheckBaseline(const ResultTable& table, const std::string& baseline);
 
 /// Differences to a baseline.
 struct Comparison {
-  /// Of every sequence, then, if there are several, over all of them.
-  std::vector<ResultGroup> groups;
+  std::vector<ResultGroup> groups;  ///< Of every sequence.
+  /// Effects, see EffectOn(), over the means of the sequences, so that each
+  /// counts once; none of a single sequence.
+  std::vector<ResultGroup> effects;
   int unpaired = 0;  ///< Complete runs that nothing can be compared with.
 };
 

@@ -62,16 +62,33 @@ TEST(ResultStatistics, RepeatsHaveMeanAndScatter) {
 }
 
 TEST(ResultStatistics, DifferencesArePairedBySequenceAndRepeat) {
-  const auto groups = CompareWithBaseline(Sample(), "weight=4").groups;
-  ASSERT_EQ(groups.size(), 3u);
+  const Comparison comparison = CompareWithBaseline(Sample(), "weight=4");
+  const auto& groups = comparison.groups;
+  ASSERT_EQ(groups.size(), 2u);
   EXPECT_EQ(groups[0].sequence, "a");
   EXPECT_NEAR(Ate(groups[0]).mean, 0.004, 1e-12);
   EXPECT_NEAR(Ate(groups[0]).StandardError(), 0.001, 1e-12);
   EXPECT_EQ(groups[1].runs, 1);
-  EXPECT_EQ(groups[2].sequence, kAllSequences);
-  EXPECT_EQ(groups[2].runs, 3);
-  EXPECT_NEAR(Ate(groups[2]).mean, 0.003, 1e-12);
-  EXPECT_EQ(groups[2].seconds.mean, 2);
+  EXPECT_EQ(groups[1].seconds.mean, 2);
+}
+
+TEST(ResultStatistics, EffectsCountEverySequenceOnce) {
+  ResultTable table = Sample();
+  for (ResultRow& row : table.rows) {
+    row.figures.At("missing") = row.values[0] == "8" ? 0.03 : 0;
+  }
+  const auto effects = CompareWithBaseline(table, "weight=4").effects;
+  ASSERT_EQ(effects.size(), 1u);
+  EXPECT_EQ(effects[0].sequence, kAllSequences);
+  EXPECT_EQ(effects[0].runs, 3);
+  const double a = (std::log(1.3) + std::log(1.25)) / 2, b = std::log(1.01);
+  EXPECT_EQ(Ate(effects[0]).count, 2);
+  EXPECT_NEAR(Ate(effects[0]).mean, (a + b) / 2, 1e-12);
+  EXPECT_NEAR(Ate(effects[0]).StandardError(), (a - b) / 2, 1e-12);
+  const Spread& missing = effects[0].figures[FigureColumn("missing")];
+  EXPECT_NEAR(missing.mean, 0.03, 1e-12);
+  table.rows.resize(4);
+  EXPECT_TRUE(CompareWithBaseline(table, "weight=4").effects.empty());
 }
 
 TEST(ResultStatistics, OtherDesignKeysStayTheSame) {
@@ -177,7 +194,9 @@ TEST(PrintedTable, ShowsWhatVariesAndIsKnown) {
   const std::string differences = PrintedDifferences(
       table, CompareWithBaseline(table, "weight=4"), "weight=4", 80);
   EXPECT_THAT(differences, HasSubstr("+4.00+-1.00"));
-  EXPECT_THAT(differences, HasSubstr("(all)"));
+  // 100 times the log ratios: ATE of a: 24.3, of b: 1.0.
+  EXPECT_THAT(differences, HasSubstr("ATE %\n(all)"));
+  EXPECT_THAT(differences, HasSubstr("+12.6+-11.6"));
 }
 
 TEST(PrintedTable, WhatTellsMostComesFirst) {
@@ -199,7 +218,7 @@ TEST(PrintedTable, WhatTellsMostComesFirst) {
       table, CompareWithBaseline(table, "weight=4"), "weight=4", 60);
   EXPECT_THAT(differences, HasSubstr("stretched %\n"));
   EXPECT_THAT(differences, HasSubstr("ATE mm, F seen %."));
-  EXPECT_THAT(PrintedDifferences(table, {{}, 2}, "weight=4", 100),
+  EXPECT_THAT(PrintedDifferences(table, {{}, {}, 2}, "weight=4", 100),
               HasSubstr("2 runs are not compared"));
 }
 
@@ -209,15 +228,22 @@ TEST(PrintedTable, HeadingsAreDocumented) {
   const std::string page{std::istreambuf_iterator<char>(stream), {}};
   ResultTable table = Sample();
   table.rows[0].figures.values.fill(1);
-  const std::string text = PrintedSummary(table, GroupResults(table), 1000);
-  const std::string heads = text.substr(0, text.find('\n'));
+  std::string text = PrintedSummary(table, GroupResults(table), 1000);
+  std::string heads = text.substr(0, text.find('\n'));
+  text = PrintedDifferences(table, {GroupResults(table), GroupResults(table)},
+                            "weight=4", 1000);
+  text.erase(0, text.find("Effects over"));
+  text.erase(0, text.find('\n') + 1);
+  heads += "  " + text.substr(text.find("s/run"),
+                              text.find('\n') - text.find("s/run"));
   const std::regex between("  +");
   std::sregex_token_iterator head(heads.begin(), heads.end(), between, -1), end;
   int count = 0;
   for (std::advance(head, 2); head != end; ++head, ++count) {
     EXPECT_THAT(page, HasSubstr("`" + head->str() + "`"));
   }
-  EXPECT_EQ(count, 17);  // The number of runs, and all figures.
+  // The number of runs and all figures; seconds of a run and all effects.
+  EXPECT_EQ(count, 17 + 17);
 }
 
 TEST(PrintedTable, IsNeverWiderThanTheTerminal) {
@@ -238,8 +264,9 @@ TEST(PrintedTable, IsNeverWiderThanTheTerminal) {
     const auto groups = GroupResults(table);
     const std::string text = PrintedSummary(table, groups, width);
     ExpectWidth(text, width);
-    ExpectWidth(PrintedDifferences(table, {groups, 0}, "weight=4", width),
-                width);
+    ExpectWidth(
+        PrintedDifferences(table, {groups, groups, 0}, "weight=4", width),
+        width);
     if (width < 80) continue;
     EXPECT_THAT(text, HasSubstr("F seen %"));
     EXPECT_THAT(text, HasSubstr("Not shown (in the files):"));

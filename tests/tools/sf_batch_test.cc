@@ -302,6 +302,7 @@ TEST_F(SfBatch, SweepsTheRealProgram) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_THAT(csv, HasSubstr(",sequence,1,complete,8,4,0,0."));
   EXPECT_TRUE(folder_.Has("out/differences.csv"));
+  EXPECT_TRUE(folder_.Has("out/effects.csv"));
   EXPECT_TRUE(folder_.Has("out/results.sqlite"));
   const ProgramResult again = RunProgram("sf_batch", arguments);
   EXPECT_THAT(again.errors, HasSubstr(" kept"));
