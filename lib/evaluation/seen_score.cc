@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "splitfusion/lib/evaluation/surface_error.h"
@@ -45,13 +46,12 @@ bool IsShown(const Eigen::Vector3d& point, int instance,
 /// Part of the points that are nearer than kSeenThreshold to one of the others.
 double PartWithin(const std::vector<Eigen::Vector3f>& points,
                   const KdTree& others) {
-  std::vector<double> distances(points.size());
+  std::vector<char> near(points.size());
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-    float distance = 0;
-    others.Nearest(points[i], &distance);
-    distances[i] = distance;
+    near[i] = others.HasNear(points[i], kSeenThreshold);
   });
-  return FractionWithin(distances, kSeenThreshold);
+  const auto count = std::count(near.begin(), near.end(), true);
+  return static_cast<double>(count) / static_cast<double>(points.size());
 }
 
 /// What was seen of one instance so far, and what the surfaces make of it.
@@ -80,8 +80,9 @@ class Witness {
     const std::vector<Eigen::Vector3f> truth =
         SampleSurface(occasion.truth.mesh, kSamples, kTruthSeed);
     frames_.push_back(occasion.frame->index);
+    const KdTree truth_tree(truth);
     for (const AnimatedSurface& surface : surfaces_) {
-      Score(surface, occasion, truth, seen);
+      Score(surface, occasion, truth_tree, seen);
     }
   }
 
@@ -118,8 +119,7 @@ class Witness {
   }
 
   void Score(const AnimatedSurface& surface, const TrueOccasion& occasion,
-             const std::vector<Eigen::Vector3f>& truth,
-             const std::vector<Eigen::Vector3f>& seen) {
+             const KdTree& truth, const std::vector<Eigen::Vector3f>& seen) {
     const int frame = occasion.frame->index;
     if (surface.background() || !surface.HasMotions(frame)) return;
     const TriangleMesh model = ModelInWorld(surface, occasion);
@@ -129,7 +129,7 @@ class Witness {
     if (points.empty()) return;
     SeenFrame& score = scores_[surface.recorded().id][frame];
     score.frame = frame;
-    score.precision = PartWithin(points, KdTree(truth));
+    score.precision = PartWithin(points, truth);
     score.recall = PartWithin(seen, KdTree(points));
     score.f_score = HarmonicMean(score.precision, score.recall);
   }

@@ -4,7 +4,6 @@
 #include <pcl/point_types.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace splitfusion {
 
@@ -28,13 +27,12 @@ KdTree::~KdTree() = default;
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 
-int KdTree::Nearest(const Eigen::Vector3f& query, float* distance) const {
-  thread_local pcl::Indices index(1);
-  thread_local std::vector<float> squared(1);
-  impl_->tree.nearestKSearch(pcl::PointXYZ(query.x(), query.y(), query.z()), 1,
-                             index, squared);
-  if (distance != nullptr) *distance = std::sqrt(squared[0]);
-  return index[0];
+bool KdTree::HasNear(const Eigen::Vector3f& query, double distance) const {
+  thread_local pcl::Indices index;
+  thread_local std::vector<float> squared;
+  return impl_->tree.radiusSearch(
+             pcl::PointXYZ(query.x(), query.y(), query.z()), distance, index,
+             squared, 1) > 0;
 }
 
 std::vector<int> KdTree::Nearest(const Eigen::Vector3f& query,

@@ -19,8 +19,8 @@ class KdTree {
   /// Takes the tree over.
   KdTree& operator=(KdTree&&) noexcept;
 
-  /// Index of the nearest point; `distance` (metres) may be null.
-  int Nearest(const Eigen::Vector3f& query, float* distance) const;
+  /// Whether a point is nearer than `distance` (metres).
+  bool HasNear(const Eigen::Vector3f& query, double distance) const;
 
   /// Indices of the `count` nearest points (fewer if there are not so many),
   /// nearest first.

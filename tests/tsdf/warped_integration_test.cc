@@ -79,9 +79,7 @@ TEST_F(WarpedIntegration, ARigidWarpIsRigidIntegration) {
   const KdTree tree(b.vertices);
   int apart = 0;
   for (const Eigen::Vector3f& v : a.vertices) {
-    float distance = 0;
-    tree.Nearest(v, &distance);
-    apart += distance > 1e-4f;
+    apart += tree.HasNear(v, 1e-4) ? 0 : 1;
   }
   EXPECT_LT(apart, 0.02 * a.vertices.size());
 }
