@@ -40,9 +40,9 @@ void PipelineOptions::List(OptionList* list) {
                "predicted, not tracked; 0 = never.")
       .common = true;
   list->Number("min_coverage", &min_coverage, Range::Share(), "",
-               "A surface that is looked for is found if as many of its model "
-               "points lie on it as this share of its live pixels apart from "
-               "edges; 0 = not asked.");
+               "A surface that was lost or hidden is found only if its paired "
+               "model points are this share of its live pixels (edges apart); "
+               "0 = not asked.");
   list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
                "of the image", "A surface is modelled once it covers as much.");
   list->Number("max_lost", &max_lost, Range::AtLeast(1), "frames",

@@ -128,8 +128,8 @@ void TrackerOptions::List(OptionList* list) {
              "space.")
       .common = true;
   list->Number("rigid_distance", &rigid_distance, Range::Above(0), "metres",
-               "Largest distance of pairs in the first rigid stage; the last "
-               "has half of it.")
+               "Largest distance of pairs in the first rigid stage, but at "
+               "least three times the depth noise; the last has half of it.")
       .common = true;
   list->Number(
           "rigid_angle", &rigid_angle, {0, 180, true}, "degrees",

@@ -25,9 +25,9 @@ void SplitOptions::List(OptionList* list) {
   list->Number("max_missed_frames", &max_missed_frames, Range::AtLeast(0),
                "frames", "A surface is followed so long without a detection.");
   list->Number("birth_frames", &birth_frames, Range::AtLeast(1), "frames",
-               "Detections more than half of the frames without one that make "
-               "a surface; twice as many where background was mapped for long, "
-               "or of a rigid class.");
+               "A detection counts 1, a frame without one takes 1/2 back; the "
+               "sum that makes a surface, twice as much where background was "
+               "mapped for long, or of a rigid class.");
   list->Number("confident_score", &confident_score, Range::Share(), "",
                "From this score on a detection of the first frame makes a "
                "surface at once.");
