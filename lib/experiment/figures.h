@@ -31,8 +31,11 @@ inline constexpr std::array<const char*, 16> kFigureNames = {
 /// Place of a name in kFigureNames.
 std::size_t FigureColumn(const std::string& name);
 
-/// Effect on a figure, by its place: the log ratio to that of the baseline, or,
-/// of shares and counts, which may be 0, the difference.
+/// Effect on a figure, by its place in kFigureNames: the natural logarithm of
+/// its ratio to that of the baseline, without unit, or, of shares and counts,
+/// which may be 0, the difference. Not finite if either is unknown, or 0 in a
+/// ratio: DescribeValues() leaves such effects out, and counts those that it
+/// takes.
 double EffectOn(std::size_t figure, double value, double baseline);
 
 /// Whether the effect is a log ratio.
