@@ -38,7 +38,7 @@ struct PipelineOptions {
       "point_to_plane(weight=1,loss=tukey,scale=0.03) "
       "color(weight=8,loss=huber,scale=0.01) "
       "live_to_model(weight=1,loss=huber,scale=0.013) "
-      "tracks(weight=1,loss=huber,scale=0.01) arap(weight=8) "
+      "tracks(weight=16,loss=huber,scale=0.01) arap(weight=8) "
       "temporal_arap(weight=8)";
   int render_stride = 2;       ///< Model maps hold every n-th pixel.
   bool split_scene = true;     ///< False: one surface holds the whole scene.

@@ -4,43 +4,30 @@
 #include <cmath>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
 #include <utility>
 
 #include "splitfusion/lib/geometry/nearest_point.h"
 #include "splitfusion/lib/tracking/agreement.h"
+#include "splitfusion/lib/tracking/dense_flow.h"
 
 namespace splitfusion {
 namespace {
 
-/// Levels of the image pyramids above the image itself: with a window of 21
-/// pixels a point may move by 80.
-constexpr int kPyramidLevels = 3;
+/// Around what moves, so that the flow sees where it came from and goes to.
+constexpr int kMargin = 16;  // Pixels.
 
-std::vector<cv::Point2f> PixelsOf(
-    const std::map<int, std::vector<PointTrack>>& tracks) {
-  std::vector<cv::Point2f> pixels;
-  for (const auto& [surface, points] : tracks) {
-    for (const PointTrack& track : points) {
-      pixels.emplace_back(track.pixel.x(), track.pixel.y());
-    }
+/// The part of the image in which the tracks of a surface are, and the surface
+/// in the next one.
+cv::Rect BoxOf(const std::vector<PointTrack>& tracks, int surface,
+               const cv::Mat_<std::uint16_t>& labels) {
+  cv::Rect box = cv::boundingRect(labels == surface);
+  for (const PointTrack& track : tracks) {
+    box |= cv::Rect(static_cast<int>(track.pixel.x()),
+                    static_cast<int>(track.pixel.y()), 1, 1);
   }
-  return pixels;
-}
-
-/// Where points of one image are in another, and which were found.
-struct SparseFlow {
-  std::vector<cv::Point2f> pixels;
-  std::vector<std::uint8_t> found;
-};
-
-SparseFlow FollowPixels(const cv::Mat& from, const cv::Mat& to,
-                        const std::vector<cv::Point2f>& pixels, int window) {
-  SparseFlow flow;
-  if (pixels.empty()) return flow;
-  cv::calcOpticalFlowPyrLK(from, to, pixels, flow.pixels, flow.found,
-                           cv::noArray(), {window, window}, kPyramidLevels);
-  return flow;
+  box -= cv::Point(kMargin, kMargin);
+  box += cv::Size(2 * kMargin, 2 * kMargin);
+  return box & cv::Rect({}, labels.size());
 }
 
 /// Model points by where they are in the canonical frame.
@@ -57,8 +44,6 @@ void PointTrackOptions::List(OptionList* list) {
   list->Number("track_spacing", &spacing, Range::AtLeast(0), "pixels",
                "Points of deforming surfaces are followed from image to image, "
                "for the term tracks, one in so many; 0: none.");
-  list->Number("track_window", &window, {3, 101}, "pixels",
-               "Of the image around such a point that is compared.");
   list->Number(
       "track_max_return", &max_return, Range::Above(0), "pixels",
       "A track ends where optical flow there and back is farther off.");
@@ -67,29 +52,28 @@ void PointTrackOptions::List(OptionList* list) {
 void PointTracks::Follow(const LiveView& live, const std::set<int>& surfaces) {
   cv::Mat_<std::uint8_t> grey;
   cv::cvtColor(live.color, grey, cv::COLOR_BGR2GRAY);
-  const std::vector<cv::Point2f> start = PixelsOf(tracks_);
-  const SparseFlow forth = FollowPixels(grey_, grey, start, options_.window);
-  const SparseFlow back =
-      FollowPixels(grey, grey_, forth.pixels, options_.window);
+  cv::Mat_<cv::Vec2f> flow(grey.size(), cv::Vec2f(0, 0));
   std::map<int, std::vector<PointTrack>> followed;
-  for (const int surface : surfaces) followed[surface];
-  std::size_t i = 0;
-  for (const auto& [surface, points] : tracks_) {
-    const auto kept = followed.find(surface);
-    for (const PointTrack& track : points) {
-      const std::size_t at = i++;
-      if (kept == followed.end() || !forth.found[at] || !back.found[at] ||
-          cv::norm(back.pixels[at] - start[at]) > options_.max_return) {
-        continue;
-      }
-      const Eigen::Vector2f place(forth.pixels[at].x, forth.pixels[at].y);
-      const auto pixel = live.camera.PixelAt(place);
+  for (const int surface : surfaces) {
+    std::vector<PointTrack>& kept = followed[surface];
+    const auto known = tracks_.find(surface);
+    if (known == tracks_.end() || known->second.empty()) continue;
+    const DenseFlow moved(grey_, grey,
+                          BoxOf(known->second, surface, live.labels), flow_);
+    moved.Write(&flow);
+    for (const PointTrack& track : known->second) {
+      const auto place =
+          moved.Follow({track.pixel.x(), track.pixel.y()}, options_.max_return);
+      if (!place) continue;
+      const Eigen::Vector2f there(place->x, place->y);
+      const auto pixel = live.camera.PixelAt(there);
       if (!pixel || !IsCertain(live, surface, pixel->y(), pixel->x())) continue;
-      kept->second.push_back({track.point, place});
+      kept.push_back({track.point, there});
     }
   }
   tracks_ = std::move(followed);
   grey_ = grey;
+  flow_ = flow;
 }
 
 std::vector<TrackedPoint> PointTracks::Find(

@@ -19,10 +19,9 @@ struct PointTrackOptions {
   /// Cells of the image in which at most one track begins, pixels; 0: no
   /// points are followed.
   int spacing = 8;
-  int window = 21;  ///< Compared around a point, pixels.
   /// A track ends if flow there and back ends farther than this from where it
   /// began, pixels.
-  double max_return = 1.5;
+  double max_return = 0.5;
 
   /// Names, ranges and meaning of all fields.
   void List(OptionList* list);
@@ -42,8 +41,8 @@ struct PointTrack {
   }
 };
 
-/// Points of the surfaces followed over many frames by sparse optical flow
-/// (Lucas and Kanade 1981, in image pyramids: OpenCV's). Each is anchored in
+/// Points of the surfaces followed over many frames by optical flow, see
+/// DenseFlow. Each is anchored in
 /// the canonical frame at the model point that was seen there when its track
 /// began, so that it tells where that point is now: long tracks hold a surface
 /// along itself, where depth lets it slide (Guo et al. 2015; VolumeDeform does
@@ -88,13 +87,14 @@ class PointTracks {
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(tracks_, grey_);
+    (*archive)(tracks_, grey_, flow_);
   }
 
  private:
   PointTrackOptions options_;
   std::map<int, std::vector<PointTrack>> tracks_;  // By surface.
   cv::Mat_<std::uint8_t> grey_;  // Of the last frame; empty before the first.
+  cv::Mat_<cv::Vec2f> flow_;     // To it; 0 where no surface was followed.
 };
 
 }  // namespace splitfusion
