@@ -26,7 +26,7 @@ struct TrackingStage {
 struct TrackerOptions {
   std::string association = "projective";  ///< A name of the registry in use.
   double rigid_distance = 0.10;  ///< First gate of the rigid stages, metres.
-  double rigid_angle = 90;       ///< First one of normals, degrees.
+  double rigid_angle = 30;       ///< First one of normals, degrees.
   double non_rigid_distance = 0.10;  ///< First gate of the non-rigid stages.
   double non_rigid_angle = 45;       ///< Of normals, degrees.
   /// Of Association::lost in the first non-rigid stage, metres. In the second

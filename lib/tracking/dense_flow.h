@@ -1,9 +1,9 @@
 #ifndef SPLITFUSION_LIB_TRACKING_DENSE_FLOW_H_
 #define SPLITFUSION_LIB_TRACKING_DENSE_FLOW_H_
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <vector>
 
 namespace splitfusion {
 
