@@ -12,16 +12,18 @@ namespace splitfusion {
 class DenseFlow {
  public:
   /// `from`, `to`: grey, HxW 8UC1. `box`: the part, within them, of both; at
-  /// least 16 pixels wide and high. `before`: HxW, the flow from the image
-  /// before `from` to it, 0 where it is not known; what moves goes on like
-  /// that, at first sight: a limb that moves by more than a stripe of its
-  /// sleeve would else be found at the next one.
+  /// least 16 pixels wide and high, or OpenCV throws. `before`: HxW 32FC2
+  /// (columns, rows), pixels, the flow that led from the image before to
+  /// `from`, by pixels of the former; 0 where it is not known. The search
+  /// begins with it, as what moves goes on: else a limb that moves by more than
+  /// a stripe of its sleeve would be found at the next one.
   DenseFlow(const cv::Mat_<std::uint8_t>& from,
             const cv::Mat_<std::uint8_t>& to, const cv::Rect& box,
             const cv::Mat_<cv::Vec2f>& before);
 
-  /// Where a pixel of `from` is in `to`; none if outside of the box, or if the
-  /// way back from there ends more than `max_return` pixels off.
+  /// Where a pixel of `from` (column, row) is in `to`; none if one of them is
+  /// outside of the box, or if the way back from there ends more than
+  /// `max_return` pixels off.
   std::optional<cv::Point2f> Follow(const cv::Point2f& pixel,
                                     double max_return) const;
 

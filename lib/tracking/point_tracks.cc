@@ -13,8 +13,9 @@
 namespace splitfusion {
 namespace {
 
-/// Around what moves, so that the flow sees where it came from and goes to.
-constexpr int kMargin = 16;  // Pixels.
+/// Around what moves, pixels: two of the patches of eight that DenseFlow
+/// compares, so that its border does not end within one.
+constexpr int kMargin = 16;
 
 /// The part of the image in which the tracks of a surface are, and the surface
 /// in the next one.
