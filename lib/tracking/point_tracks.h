@@ -44,8 +44,8 @@ struct PointTrack {
 /// Points of the surfaces followed over many frames by optical flow, see
 /// DenseFlow. Each is anchored in the canonical frame at the model point that
 /// was seen there when its track began, so that it tells where that point is
-/// now: long tracks hold a surface along itself, where depth lets it slide (Guo et al. 2015; VolumeDeform does
-/// so with features). Not in the paper.
+/// now: long tracks hold a surface along itself, where depth lets it slide (Guo
+/// et al. 2015; VolumeDeform does so with features). Not in the paper.
 ///
 /// A track ends where the flow back does not return, and where its pixel does
 /// not show its surface for sure. It does not come back; another one may begin
