@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
@@ -17,30 +18,29 @@ namespace splitfusion {
 ///
 /// x is the warped model point (Eq. 2), pi the pinhole projection, u_0 its
 /// pixel at the last association, about which the live image I is linear; I_m
-/// the grey value of the model's colour, c the confidence of the depth. The
-/// factor m = 0.05 m makes a step of 0.2 in grey value count like one
-/// centimetre. It ties a surface along itself, where Eq. 5 lets it slide; the
+/// the grey value of the model's colour, c the confidence of the depth, m what
+/// a step from black to white counts for, metres: with 0.05 one of 0.2 counts
+/// like one centimetre. It ties a surface along itself, where Eq. 5 lets it slide; the
 /// paper has no such term, see docs/paper_map.md.
 ///
 /// Residual: 1, metres * sqrt(confidence). Zero for motions along the view ray.
 struct ColorConstancy {
   /// Residuals of one point.
   static constexpr int kResiduals = 1;  // Layout.
-  /// m: metres that a grey value difference of 1 counts for.
-  static constexpr double kMetresPerIntensity = 0.05;
   PinholeCamera camera;      ///< Live camera.
   Eigen::Vector2d pixel;     ///< u_0, pixels.
   Eigen::Vector2d gradient;  ///< grad I at u_0, 1 / pixel.
   double difference = 0;     ///< d, 0..1.
   /// sqrt(c) of the confidence.
   double sqrt_confidence = 1;
+  double metres = 0.05;  ///< m.
 
   /// `x`: warped point, camera frame, metres.
   template <typename T>
   bool operator()(const T* x, T* residual) const {
     const T du = T(camera.fx) * x[0] / x[2] + T(camera.cx - pixel.x());
     const T dv = T(camera.fy) * x[1] / x[2] + T(camera.cy - pixel.y());
-    residual[0] = T(kMetresPerIntensity * sqrt_confidence) *
+    residual[0] = T(metres * sqrt_confidence) *
                   (T(difference) + T(gradient.x()) * du + T(gradient.y()) * dv);
     return true;
   }
@@ -49,6 +49,11 @@ struct ColorConstancy {
 /// Colour constancy over all correspondences.
 class ColorConstancyTerm : public EnergyTerm {
  public:
+  void List(OptionList* list) override {
+    list->Number("metres", &metres_, Range::Above(0), "metres",
+                 "That a difference from black to white counts for.");
+  }
+
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
     std::vector<const ModelSample*> samples;
@@ -60,11 +65,14 @@ class ColorConstancyTerm : public EnergyTerm {
       samples.push_back(&c.model);
       functors.push_back({input.camera, c.pixel.cast<double>(),
                           c.intensity_gradient.cast<double>(),
-                          c.intensity_difference, std::sqrt(c.weight)});
+                          c.intensity_difference, std::sqrt(c.weight), metres_});
       total += c.weight;
     }
     sink->AddWarpedPoints(samples, functors, total);
   }
+
+ private:
+  double metres_ = ColorConstancy().metres;
 };
 
 }  // namespace splitfusion

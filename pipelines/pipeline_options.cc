@@ -12,7 +12,7 @@ PipelineOptions::PipelineOptions() {
 
 void PipelineOptions::List(OptionList* list) {
   list->Text("terms", &terms,
-             "The energy, Eq. 4: NAME(weight=,loss=,scale=) ...")
+             "The energy, Eq. 4: NAME(KEY=VALUE,...) ..., keys by --help_terms.")
       .common = true;
   list->Switch("split_scene", &split_scene,
                "Split the scene; otherwise one surface holds all of it.");

@@ -47,6 +47,7 @@ const std::set<std::string>& Uncounted() {
                                               "output",
                                               "resume",
                                               "overwrite",
+                                              "help_terms",
                                               "print_identity",
                                               "print_options",
                                               "sequence",
@@ -158,8 +159,8 @@ void SetFlag(const std::string& key, const std::string& value) {
                      IsRunFlag(flag) && key != "set" && key != "output";
   if (!known) {
     throw InputError("--set: key '" + key +
-                     "': expected a flag of sf_run, or terms.NAME.weight, "
-                     "loss or scale");
+                     "': expected a flag of sf_run, or terms.NAME.KEY "
+                     "(sf_run --help_terms)");
   }
   if (gflags::SetCommandLineOption(key.c_str(), value.c_str()).empty()) {
     throw InputError("--set: " + key + " = " + value + ": expected a value " +

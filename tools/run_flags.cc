@@ -93,7 +93,7 @@ std::string FlagfileText() {
   // --flagfile=RUN/options.flags --output=NEW repeats it.
   const std::set<std::string> left_out = {
       "output", "overwrite",     "keep_same",     "resume",
-      "set",    "print_options", "print_identity"};
+      "set",    "print_options", "print_identity", "help_terms"};
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
   std::string text;

@@ -39,6 +39,8 @@ DEFINE_int32(checkpoint_every, 0,
 DEFINE_bool(keep_checkpoints, false, "Keep all checkpoints, for --from.");
 DEFINE_string(from, "", "Run with --keep_checkpoints to start from.");
 DEFINE_int32(at, 0, "First frame to compute after --from.");
+DEFINE_bool(help_terms, false,
+            "Print all terms of the energy with their keys, and end.");
 DEFINE_bool(print_options, false, "Print all options of the method, and end.");
 DEFINE_bool(print_identity, false, "Print what decides the result, and end.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
@@ -200,6 +202,10 @@ int Reconstruct(const ReaderOptions& reading, const PipelineOptions& options,
 }
 
 int RunSequence(const Registries& registries) {
+  if (FLAGS_help_terms) {
+    std::cout << TermsHelp(registries.terms);
+    return kExitDone;
+  }
   if (FLAGS_print_options) {
     std::cout << MethodOptionsMarkdown(registries);
     return kExitDone;

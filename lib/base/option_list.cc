@@ -1,6 +1,7 @@
 #include "splitfusion/lib/base/option_list.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "splitfusion/lib/base/any_of.h"
@@ -8,6 +9,33 @@
 #include "splitfusion/lib/base/number_text.h"
 
 namespace splitfusion {
+namespace {
+
+/// Reads all of `text`; false if it is no number of this kind.
+template <typename T>
+bool ReadNumber(const std::string& text, T* number) {
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, *number);
+  return read.ec == std::errc() && read.ptr == end;
+}
+
+bool ReadValue(const std::string& text, bool* value) {
+  *value = text == "true";
+  return *value || text == "false";
+}
+bool ReadValue(const std::string& text, int* value) {
+  return ReadNumber(text, value);
+}
+bool ReadValue(const std::string& text, double* value) {
+  return ReadNumber(text, value);
+}
+bool ReadValue(const std::string& text, std::string* value) {
+  *value = text;
+  return true;
+}
+
+}  // namespace
+
 bool Range::Holds(double value) const {
   return std::isfinite(value) && (above_low ? value > low : value >= low) &&
          (below_high ? value < high : value <= high);
@@ -45,17 +73,29 @@ std::string Option::ValueText() const {
   return NumberText(*std::get<double*>(value));
 }
 
-void Option::Check() const {
-  bool good = true;
+bool Option::Fits() const {
   if (const auto* number = std::get_if<double*>(&value)) {
-    good = range.Holds(**number);
-  } else if (const auto* count = std::get_if<int*>(&value)) {
-    good = range.Holds(**count);
-  } else if (const auto* text = std::get_if<std::string*>(&value)) {
-    good = choices.empty() ||
-           std::count(choices.begin(), choices.end(), **text) > 0;
+    return range.Holds(**number);
   }
-  if (!good) throw OptionError(name, ValueText(), Expected());
+  if (const auto* count = std::get_if<int*>(&value)) return range.Holds(**count);
+  const auto* text = std::get_if<std::string*>(&value);
+  return text == nullptr || choices.empty() ||
+         std::count(choices.begin(), choices.end(), **text) > 0;
+}
+
+void Option::Check() const {
+  if (!Fits()) throw OptionError(name, ValueText(), Expected());
+}
+
+void Option::Set(const std::string& text) {
+  std::visit(
+      [&](auto* field) {
+        const auto before = *field;
+        if (ReadValue(text, field) && Fits()) return;
+        *field = before;
+        throw OptionError(name, text, Expected());
+      },
+      value);
 }
 
 Option& OptionList::Number(const std::string& name, int* value,

@@ -48,8 +48,15 @@ struct Option {
   std::string Expected() const;
   /// Its value in the shortest text that gives it back.
   std::string ValueText() const;
-  /// @throw OptionError if the value is not what is expected.
+  /// Whether the value is what is expected.
+  bool Fits() const;
+  /// @throw OptionError unless it fits.
   void Check() const;
+  /// Reads the value from text.
+  ///
+  /// @throw OptionError if the text is not what is expected; the value is then
+  ///     what it was.
+  void Set(const std::string& text);
 };
 
 /// The options of a part of the method, and of its parts. Every struct of

@@ -12,6 +12,7 @@
 
 namespace splitfusion {
 
+class OptionList;
 struct LiveView;
 
 /// What a term may look at: one surface at one association.
@@ -53,6 +54,11 @@ struct EnergyInput {
 class EnergyTerm {
  public:
   virtual ~EnergyTerm() = default;
+
+  /// Adds the term's own parameters: names, ranges, units and meaning of its
+  /// fields, whose values so far are the defaults. They become keys of the term
+  /// in --terms and --set, beside weight, loss and scale.
+  virtual void List(OptionList* /*list*/) {}
 
   /// Adds the residuals of all its points, nodes or edges.
   virtual void AddResiduals(const EnergyInput& input,

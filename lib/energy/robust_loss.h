@@ -5,11 +5,15 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace splitfusion {
 
 /// Robust losses by their names on the command line.
 enum class LossKind { kTrivial, kHuber, kTukey, kCauchy };
+
+/// All names, as ParseLoss() takes them.
+std::vector<std::string> LossNames();
 
 /// @throw InputError on an unknown name; lists the known ones.
 LossKind ParseLoss(const std::string& name);

@@ -2,44 +2,75 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
+#include <set>
 #include <utility>
 
+#include "splitfusion/lib/base/any_of.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/base/number_text.h"
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
 namespace {
 
-double ParseNumber(const std::string& key, const std::string& value) {
-  std::size_t used = 0;
-  double number = std::nan("");
-  try {
-    number = std::stod(value, &used);
-  } catch (const std::exception&) {
-    used = 0;
+/// The keys of a term: weight, loss and scale, then those of its own.
+class TermKeys {
+ public:
+  explicit TermKeys(WeightedTerm* term)
+      : term_(term), loss_(ToString(term->options.loss)) {
+    list_.Part(term->options.name + ".", this);
+    std::set<std::string> names;
+    for (const Option& option : all()) {
+      if (names.insert(option.name).second) continue;
+      throw InputError("term '" + term->options.name + "' has the key '" +
+                       KeyOf(option) + "' twice");
+    }
   }
-  CheckOption(used == value.size() && std::isfinite(number), key, value,
-              "a number");
-  return number;
-}
 
-void SetKey(const std::string& key, const std::string& value,
-            TermOptions* options) {
-  const std::string field = options->name + "." + key;
-  if (key == "weight") {
-    options->weight = ParseNumber(field, value);
-    CheckOption(options->weight >= 0, field, value, "a number >= 0");
-  } else if (key == "scale") {
-    options->scale = ParseNumber(field, value);
-    CheckOption(options->scale > 0, field, value, "metres > 0");
-  } else if (key == "loss") {
-    options->loss = ParseLoss(value);
-  } else {
-    throw InputError("--terms: key '" + key + "' of term '" + options->name +
-                     "': expected weight, loss or scale");
+  /// Names begin with that of the term and a dot.
+  const std::vector<Option>& all() const { return list_.options(); }
+
+  /// @throw InputError if the key is unknown or the value is refused.
+  void Set(const std::string& key, const std::string& value) {
+    std::vector<std::string> known;
+    for (Option option : all()) {
+      known.push_back(KeyOf(option));
+      if (known.back() != key) continue;
+      option.Set(value);
+      term_->options.loss = ParseLoss(loss_);
+      return;
+    }
+    throw InputError("--terms: key '" + key + "' of term '" +
+                     term_->options.name + "': expected " + AnyOf(known));
   }
+
+  /// The name less that of the term.
+  std::string KeyOf(const Option& option) const {
+    return option.name.substr(term_->options.name.size() + 1);
+  }
+
+  void List(OptionList* list) {
+    list->Number("weight", &term_->options.weight, Range::AtLeast(0), "",
+                 "Of the term in the energy, which is a mean over residuals in "
+                 "units of 1 cm.");
+    list->Choice("loss", &loss_, LossNames(),
+                 "Robust loss of every residual vector.");
+    list->Number("scale", &term_->options.scale, Range::Above(0), "metres",
+                 "Inlier width of the loss.");
+    term_->term->List(list);
+  }
+
+ private:
+  WeightedTerm* term_;
+  std::string loss_;
+  OptionList list_;
+};
+
+WeightedTerm MakeTerm(const std::string& name, const TermRegistry& registry) {
+  WeightedTerm term;
+  term.options.name = name;
+  term.term = registry.Make(name);
+  return term;
 }
 
 std::string Trimmed(const std::string& text) {
@@ -48,7 +79,8 @@ std::string Trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(" \t\n") - begin + 1);
 }
 
-void ParseArguments(const std::string& arguments, TermOptions* options) {
+void ParseArguments(const std::string& arguments, WeightedTerm* term) {
+  TermKeys keys(term);
   std::size_t begin = 0;
   while (begin < arguments.size()) {
     const std::size_t end =
@@ -56,11 +88,10 @@ void ParseArguments(const std::string& arguments, TermOptions* options) {
     const std::string pair = Trimmed(arguments.substr(begin, end - begin));
     const std::size_t equals = pair.find('=');
     if (equals == std::string::npos) {
-      throw InputError("--terms: '" + pair + "' in term '" + options->name +
-                       "': expected key=value");
+      throw InputError("--terms: '" + pair + "' in term '" +
+                       term->options.name + "': expected key=value");
     }
-    SetKey(Trimmed(pair.substr(0, equals)), Trimmed(pair.substr(equals + 1)),
-           options);
+    keys.Set(Trimmed(pair.substr(0, equals)), Trimmed(pair.substr(equals + 1)));
     begin = end + 1;
   }
 }
@@ -77,16 +108,14 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
             text[end] == '_')) {
       ++end;
     }
-    WeightedTerm term;
-    term.options.name = text.substr(at, end - at);
-    term.term = registry.Make(term.options.name);
+    WeightedTerm term = MakeTerm(text.substr(at, end - at), registry);
     if (end < text.size() && text[end] == '(') {
       const std::size_t close = text.find(')', end);
       if (close == std::string::npos) {
         throw InputError("--terms: '(' of term '" + term.options.name +
                          "' is not closed: expected ')'");
       }
-      ParseArguments(text.substr(end + 1, close - end - 1), &term.options);
+      ParseArguments(text.substr(end + 1, close - end - 1), &term);
       end = close + 1;
     }
     energy.push_back(std::move(term));
@@ -110,12 +139,15 @@ void CheckEnergy(const Energy& energy) {
 
 std::string EnergyText(const Energy& energy) {
   std::string text;
-  for (const WeightedTerm& term : energy) {
-    const TermOptions& options = term.options;
-    text += (text.empty() ? "" : " ") + options.name +
-            "(weight=" + NumberText(options.weight) +
-            ",loss=" + ToString(options.loss) +
-            ",scale=" + NumberText(options.scale) + ")";
+  for (WeightedTerm term : energy) {
+    const TermKeys keys(&term);
+    std::string values;
+    for (const Option& option : keys.all()) {
+      values += (values.empty() ? "" : ",") + keys.KeyOf(option) + "=" +
+                option.ValueText();
+    }
+    text +=
+        (text.empty() ? "" : " ") + term.options.name + "(" + values + ")";
   }
   return text;
 }
@@ -124,38 +156,48 @@ void SetTermOption(const std::string& key, const std::string& value,
                    const TermRegistry& registry, Energy* energy) {
   const std::size_t dot = key.find('.');
   if (dot == std::string::npos) {
-    throw InputError("terms." + key +
-                     ": expected terms.NAME.weight, terms.NAME.loss or "
-                     "terms.NAME.scale");
+    throw InputError("terms." + key + ": expected terms.NAME.KEY, as in " +
+                     "terms.arap.weight");
   }
   const std::string name = key.substr(0, dot);
   auto found = std::find_if(
       energy->begin(), energy->end(),
       [&](const WeightedTerm& term) { return term.options.name == name; });
   if (found == energy->end()) {
-    WeightedTerm term;
-    term.options.name = name;
-    term.term = registry.Make(name);
-    energy->push_back(std::move(term));
+    energy->push_back(MakeTerm(name, registry));
     found = energy->end() - 1;
   }
-  SetKey(key.substr(dot + 1), value, &found->options);
+  TermKeys(&*found).Set(key.substr(dot + 1), value);
 }
 
 std::map<std::string, std::string> TermOptionValues(const Energy& energy) {
   std::map<std::string, std::string> values;
-  for (const WeightedTerm& term : energy) {
-    const TermOptions& options = term.options;
+  for (WeightedTerm term : energy) {
+    const TermKeys keys(&term);
     // The same term twice: the second one is "arap.2".
-    std::string name = options.name;
+    std::string name = term.options.name;
     for (int i = 2; values.count(name + ".weight") > 0; ++i) {
-      name = options.name + "." + std::to_string(i);
+      name = term.options.name + "." + std::to_string(i);
     }
-    values[name + ".weight"] = NumberText(options.weight);
-    values[name + ".loss"] = ToString(options.loss);
-    values[name + ".scale"] = NumberText(options.scale);
+    for (const Option& option : keys.all()) {
+      values[name + "." + keys.KeyOf(option)] = option.ValueText();
+    }
   }
   return values;
+}
+
+std::string TermsHelp(const TermRegistry& registry) {
+  std::string text;
+  for (const std::string& name : registry.names()) {
+    WeightedTerm term = MakeTerm(name, registry);
+    const TermKeys keys(&term);
+    text += name + "\n";
+    for (const Option& option : keys.all()) {
+      text += "  " + keys.KeyOf(option) + " = " + option.ValueText() + " (" +
+              option.Expected() + ")\n      " + option.help + "\n";
+    }
+  }
+  return text;
 }
 
 }  // namespace splitfusion

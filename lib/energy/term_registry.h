@@ -20,18 +20,19 @@ using TermRegistry = Registry<EnergyTerm>;
 struct WeightedTerm {
   /// Name, weight and loss.
   TermOptions options;
-  /// The term itself.
-  std::shared_ptr<const EnergyTerm> term;
+  /// The term itself, with its own parameters.
+  std::shared_ptr<EnergyTerm> term;
 };
 
 /// The energy of Eq. 4: a sum of weighted terms.
 using Energy = std::vector<WeightedTerm>;
 
 /// Parses the energy from text like
-/// `point_to_plane(weight=1,loss=tukey,scale=0.01) arap(weight=5)`.
+/// `point_to_plane(weight=1,loss=tukey,scale=0.01) arap(weight=5)`. Keys of a
+/// term are weight, loss, scale and those that it lists itself.
 ///
-/// @throw InputError on an unknown term, key or loss, a value that is no
-///     number or out of range, or a syntax error; says what is known.
+/// @throw InputError on an unknown term or key, a value that is not what is
+///     expected, or a syntax error; says what is known.
 Energy ParseEnergy(const std::string& text, const TermRegistry& registry);
 
 /// @throw InputError if no term has a weight: nothing would be minimised.
@@ -40,8 +41,8 @@ void CheckEnergy(const Energy& energy);
 /// Text that ParseEnergy() reads back, every option spelled out.
 std::string EnergyText(const Energy& energy);
 
-/// Sets one option of a term: `key` is NAME.weight, NAME.loss or NAME.scale. A
-/// term that the energy lacks is appended.
+/// Sets one option of a term: `key` is NAME.KEY, as in arap.weight. A term that
+/// the energy lacks is appended.
 ///
 /// @throw InputError as ParseEnergy().
 void SetTermOption(const std::string& key, const std::string& value,
@@ -49,6 +50,10 @@ void SetTermOption(const std::string& key, const std::string& value,
 
 /// Every option of every term: NAME.KEY -> value.
 std::map<std::string, std::string> TermOptionValues(const Energy& energy);
+
+/// What every registered term takes, for the command line: its name alone in a
+/// line, below it every key with default, range and meaning, indented.
+std::string TermsHelp(const TermRegistry& registry);
 
 }  // namespace splitfusion
 

@@ -80,6 +80,40 @@ TEST(OptionList, ADemandNamesItsOption) {
                 "right_far = 2: expected metres > near");
 }
 
+TEST(Option, ReadsItsValueFromText) {
+  WholeOptions options;
+  OptionList list;
+  options.List(&list);
+  std::vector<Option> all = list.options();
+  const auto set = [&](int i, const std::string& text) { all[i].Set(text); };
+  set(0, "7");
+  set(1, "c");
+  set(2, "a note");
+  set(3, "2.5e-1");
+  set(5, "false");
+  EXPECT_EQ(options.count, 7);
+  EXPECT_EQ(options.kind, "c");
+  EXPECT_EQ(options.note, "a note");
+  EXPECT_EQ(options.left.near, 0.25);
+  EXPECT_FALSE(options.left.fast);
+  const auto refuse = [&](int i, const std::string& text,
+                          const std::string& expected) {
+    ExpectInputError([&] { set(i, text); },
+                     all[i].name + " = " + text + ": expected " + expected);
+  };
+  for (const char* text : {"9", "7.5", "7x", "", "seven", "99999999999"}) {
+    refuse(0, text, "1..8");
+  }
+  refuse(1, "d", "a, b or c");
+  for (const char* text : {"0", "nan", "inf", "1e999", "0.1 ", "0,1"}) {
+    refuse(3, text, "metres > 0");
+  }
+  refuse(5, "1", "true or false");
+  EXPECT_EQ(options.count, 7) << "what is refused changes nothing";
+  EXPECT_EQ(options.kind, "c");
+  EXPECT_EQ(options.left.near, 0.25);
+}
+
 TEST(Range, SaysWhatItHolds) {
   EXPECT_EQ(Range().Text(), "a number");
   EXPECT_EQ(Range::AtLeast(2).Text(), ">= 2");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/lib/energy/warp_functor.h"
 #include "support/gradient_check.h"
 #include "support/sample_depth.h"
@@ -12,7 +14,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr double kUnit = ColorConstancy::kMetresPerIntensity;
+constexpr double kUnit = 0.05;  // Metres a grey value of 1 counts for.
 
 ColorConstancy Sample() {
   ColorConstancy color{};
@@ -91,6 +93,22 @@ TEST(ColorConstancyTerm, TakesTheCorrespondencesAndTheCamera) {
   EXPECT_EQ(added.residual_vectors, 2);
   // 0.2 in grey value count like 1 cm; a mean weighted by the confidence.
   EXPECT_NEAR(EnergyOf(graph, added.residuals), 0.75, 1e-5);
+}
+
+TEST(ColorConstancyTerm, CountsGreyValuesAsAskedFor) {
+  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  Correspondence c;
+  c.model.point = {0, 0, 1.5f};
+  c.model.skinning.count = 1;
+  c.model.skinning.weights[0] = 1;
+  c.intensity_difference = 0.2f;
+  const auto energy = [&](const std::string& text) {
+    const WeightedTerm term = ParseEnergy(text, BuiltinTerms()).front();
+    return EnergyOf(graph, ResidualsOf(*term.term, {graph, {c}, SmallCamera()},
+                                       term.options)
+                               .residuals);
+  };
+  EXPECT_NEAR(energy("color(metres=0.1)"), 4 * energy("color"), 1e-6);
 }
 
 }  // namespace
