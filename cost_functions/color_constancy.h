@@ -20,17 +20,17 @@ namespace splitfusion {
 /// pixel at the last association, about which the live image I is linear; I_m
 /// the grey value of the model's colour, c the confidence of the depth, m what
 /// a step from black to white counts for, metres: with 0.05 one of 0.2 counts
-/// like one centimetre. It ties a surface along itself, where Eq. 5 lets it slide; the
-/// paper has no such term, see docs/paper_map.md.
+/// like one centimetre. It ties a surface along itself, where Eq. 5 lets it
+/// slide; the paper has no such term, see docs/paper_map.md.
 ///
 /// Residual: 1, metres * sqrt(confidence). Zero for motions along the view ray.
 struct ColorConstancy {
   /// Residuals of one point.
   static constexpr int kResiduals = 1;  // Layout.
-  PinholeCamera camera;      ///< Live camera.
-  Eigen::Vector2d pixel;     ///< u_0, pixels.
-  Eigen::Vector2d gradient;  ///< grad I at u_0, 1 / pixel.
-  double difference = 0;     ///< d, 0..1.
+  PinholeCamera camera;                 ///< Live camera.
+  Eigen::Vector2d pixel;                ///< u_0, pixels.
+  Eigen::Vector2d gradient;             ///< grad I at u_0, 1 / pixel.
+  double difference = 0;                ///< d, 0..1.
   /// sqrt(c) of the confidence.
   double sqrt_confidence = 1;
   double metres = 0.05;  ///< m.
@@ -65,7 +65,8 @@ class ColorConstancyTerm : public EnergyTerm {
       samples.push_back(&c.model);
       functors.push_back({input.camera, c.pixel.cast<double>(),
                           c.intensity_gradient.cast<double>(),
-                          c.intensity_difference, std::sqrt(c.weight), metres_});
+                          c.intensity_difference, std::sqrt(c.weight),
+                          metres_});
       total += c.weight;
     }
     sink->AddWarpedPoints(samples, functors, total);

@@ -262,10 +262,10 @@ void SequenceRun::WriteFailure(const std::string& error) {
 
 /// What a run begins with.
 std::string SequenceRun::ExpectedDepth() const {
-  const DepthFilterOptions& filter = work_->reader.options().depth_filter;
+  const DepthOptions& depth = work_->reader.options().depth;
   std::ostringstream text;
-  text << "expected depth from " << filter.min_depth << " to "
-       << filter.max_depth << " m (--min_depth, --max_depth, --depth_scale)";
+  text << "expected depth from " << depth.min_depth << " to " << depth.max_depth
+       << " m (--min_depth, --max_depth, --depth_scale)";
   return text.str();
 }
 

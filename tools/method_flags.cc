@@ -14,10 +14,13 @@ namespace {
 struct FlagStorage {
   FlagStorage() {
     options.List(&list);
+    depth.List(&list);
     defaults.List(&default_list);
+    default_depth.List(&default_list);
   }
 
   PipelineOptions options, defaults;
+  DepthOptions depth, default_depth;
   OptionList list, default_list;
   std::deque<std::string> help;
 };
@@ -63,6 +66,8 @@ void RegisterMethodFlags() {
 }
 
 PipelineOptions& MethodFlags() { return Storage().options; }
+
+const DepthOptions& DepthFlags() { return Storage().depth; }
 
 void TakeMethodFlags(PipelineOptions* options) {
   OptionList list;

@@ -3,19 +3,24 @@
 
 #include <string>
 
+#include "splitfusion/lib/sequence/depth_filter.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/registries.h"
 
 namespace splitfusion {
 
-/// Makes a flag of every option of the method (PipelineOptions::List). Those
-/// that --help shows belong to the file "method_flags", the others to
-/// "method_details". To be called before the command line is read, once.
+/// Makes a flag of every option of the method (PipelineOptions::List) and of
+/// the depth that it is given (DepthOptions::List). Those that --help shows
+/// belong to the file "method_flags", the others to "method_details". To be
+/// called before the command line is read, once.
 void RegisterMethodFlags();
 
 /// The options as their flags state them; what is changed here is as if it had
 /// been given.
 PipelineOptions& MethodFlags();
+
+/// What is known of the depth sensor, as the flags state it.
+const DepthOptions& DepthFlags();
 
 /// Sets the options whose flags were given; the others stay as they are, as a
 /// preset left them, and their flags follow.

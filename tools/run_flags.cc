@@ -20,8 +20,6 @@ DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
 DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
 DEFINE_bool(skip_bad_frames, false,
             "Leave out frames whose images are missing or broken.");
-DEFINE_double(min_depth, 0.4, "Nearer depth is dropped; metres.");
-DEFINE_double(max_depth, 5.0, "Farther depth is dropped; metres.");
 
 namespace splitfusion {
 namespace {
@@ -51,8 +49,7 @@ ReaderOptions ReaderOptionsFromFlags() {
   ReaderOptions options = FramesFromFlags();
   options.depth_scale = FLAGS_depth_scale;
   options.skip_bad_frames = FLAGS_skip_bad_frames;
-  options.depth_filter.min_depth = FLAGS_min_depth;
-  options.depth_filter.max_depth = FLAGS_max_depth;
+  options.depth = DepthFlags();
   if (!FLAGS_intrinsics.empty()) {
     options.camera = ParseIntrinsics(FLAGS_intrinsics);
   }
@@ -92,7 +89,7 @@ std::string FlagfileText() {
   // Where a run goes and what may be replaced is not a part of what it does:
   // --flagfile=RUN/options.flags --output=NEW repeats it.
   const std::set<std::string> left_out = {
-      "output", "overwrite",     "keep_same",     "resume",
+      "output", "overwrite",     "keep_same",      "resume",
       "set",    "print_options", "print_identity", "help_terms"};
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);

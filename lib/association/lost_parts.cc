@@ -71,7 +71,7 @@ std::vector<Correspondence> PairLostParts(
     pair.model = sample;
     pair.target = open.points[i];
     pair.target_normal = open.normals[i];
-    pair.weight = DepthConfidence(pair.target.z());
+    pair.weight = live.camera.noise.Confidence(pair.target.z());
     lost.push_back(pair);
   }
   return lost;

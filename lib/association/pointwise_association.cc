@@ -84,7 +84,8 @@ PointwiseAssociator::Outcome PointwiseAssociator::Match(
   if (found != kAccepted) return found;
   const int u = pixel.u, v = pixel.v;
   out->target = ToEigen(live_.map.points(v, u));
-  const float gate = std::max(gates.distance, kNoiseAlone.At(out->target.z()));
+  const float gate = std::max(
+      gates.distance, kNoiseAlone.At(out->target.z(), live_.camera.noise));
   if ((point - out->target).squaredNorm() > gate * gate) return kDistance;
   out->target_normal = ToEigen(live_.map.normals(v, u));
   out->warped_normal = warp.WarpNormal(sample.skinning, sample.normal);
@@ -108,7 +109,7 @@ PointwiseAssociator::Outcome PointwiseAssociator::Match(
           Eigen::Vector2f(static_cast<float>(u), static_cast<float>(v)));
   out->intensity_difference =
       live_intensity - sample.intensity[gates.color_level];
-  out->weight = DepthConfidence(out->target.z());
+  out->weight = live_.camera.noise.Confidence(out->target.z());
   return kAccepted;
 }
 

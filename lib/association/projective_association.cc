@@ -20,7 +20,8 @@ class ProjectiveAssociator : public PointwiseAssociator {
     const float depth = live_.depth(v, u);
     if (!(depth > 0) || live_.map.normals(v, u)[2] == 0) return kNoDepth;
     if (live_.labels(v, u) != surface_) {
-      return ClassifyDepth(depth, point.z(), kNoiseAlone.At(depth)) ==
+      return ClassifyDepth(depth, point.z(),
+                           kNoiseAlone.At(depth, live_.camera.noise)) ==
                      DepthState::kOccluded
                  ? kOccluded
                  : kOtherSurface;

@@ -77,7 +77,8 @@ bool Option::Fits() const {
   if (const auto* number = std::get_if<double*>(&value)) {
     return range.Holds(**number);
   }
-  if (const auto* count = std::get_if<int*>(&value)) return range.Holds(**count);
+  if (const auto* count = std::get_if<int*>(&value))
+    return range.Holds(**count);
   const auto* text = std::get_if<std::string*>(&value);
   return text == nullptr || choices.empty() ||
          std::count(choices.begin(), choices.end(), **text) > 0;

@@ -27,9 +27,9 @@ std::vector<std::string> LossNames() {
 }
 
 LossKind ParseLoss(const std::string& name) {
-  const auto found = std::find_if(
-      Losses().begin(), Losses().end(),
-      [&](const auto& loss) { return loss.first == name; });
+  const auto found =
+      std::find_if(Losses().begin(), Losses().end(),
+                   [&](const auto& loss) { return loss.first == name; });
   CheckOption(found != Losses().end(), "loss", name, AnyOf(LossNames()));
   return found->second;
 }

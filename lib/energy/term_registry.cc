@@ -146,8 +146,7 @@ std::string EnergyText(const Energy& energy) {
       values += (values.empty() ? "" : ",") + keys.KeyOf(option) + "=" +
                 option.ValueText();
     }
-    text +=
-        (text.empty() ? "" : " ") + term.options.name + "(" + values + ")";
+    text += (text.empty() ? "" : " ") + term.options.name + "(" + values + ")";
   }
   return text;
 }

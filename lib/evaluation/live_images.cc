@@ -55,9 +55,7 @@ std::map<int, int> CountPixels(const cv::Mat_<std::uint16_t>& ids,
 }
 
 LiveImages::LiveImages(const RecordedRun& run)
-    : run_(run.root),
-      sequence_(run.sequence),
-      filter_(run.reading.depth_filter) {
+    : run_(run.root), sequence_(run.sequence), filter_(run.reading.depth) {
   CheckSource(run);
   const ImageFolderReader reader(run.sequence, run.reading, run.formats);
   format_ = run.formats.Make(reader.options().format);

@@ -55,7 +55,7 @@ class LiveImages {
  private:
   std::string run_;
   std::string sequence_;
-  DepthFilterOptions filter_;
+  DepthOptions filter_;
   std::shared_ptr<const SequenceFormat> format_;
   Calibration calibration_;
   std::vector<AssociatedFiles> files_;

@@ -122,7 +122,8 @@ StrayArea MeasureStray(const TriangleMesh& mesh, const PinholeCamera& camera,
     if (!(depth > 0)) continue;
     const double area = corners.Area();
     const double behind = centre.z() - depth;
-    const double margin = std::max(kStrayMargin, 3.0 * DepthSigma(depth));
+    const double margin =
+        std::max(kStrayMargin, 3.0 * camera.noise.Sigma(depth));
     result.in_view += area;
     if (behind > margin && behind <= kStrayReach) result.stray += area;
   }

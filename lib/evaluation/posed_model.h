@@ -29,7 +29,7 @@ struct StretchedArea {
 StretchedArea MeasureStretch(const TriangleMesh& mesh);
 
 /// Depth of the model behind the live depth from which on it is stray, metres,
-/// but at least three standard deviations of the depth (DepthSigma).
+/// but at least three standard deviations of the depth noise.
 constexpr double kStrayMargin = 0.02;
 /// Farther behind it is hidden by something else, metres.
 constexpr double kStrayReach = 0.15;

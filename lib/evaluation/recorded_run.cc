@@ -94,14 +94,15 @@ std::string FlagValue(const std::string& path, const std::string& name) {
   return "";
 }
 
-/// Replaces `value` by that of a flag if the flagfile has it.
-void ReadNumberFlag(const std::string& path, const std::string& name,
-                    double* value) {
-  const std::string text = FlagValue(path, name);
+/// Sets an option by its flag if the flagfile has it.
+void ReadFlag(const std::string& path, Option option) {
+  const std::string text = FlagValue(path, option.name);
   if (text.empty()) return;
-  std::istringstream stream(text);
-  if (!(stream >> *value) || !stream.eof()) {
-    throw InputError(path + ": --" + name + "=" + text + ": expected a number");
+  try {
+    option.Set(text);
+  } catch (const OptionError& error) {
+    throw InputError(path + ": --" + option.name + "=" + text + ": expected " +
+                     error.expected());
   }
 }
 
@@ -112,9 +113,12 @@ void ReadSource(const fs::path& root, RecordedRun* run) {
   ReaderOptions& reading = run->reading;
   const std::string format = FlagValue(flags, "format");
   if (!format.empty()) reading.format = format;
-  ReadNumberFlag(flags, "depth_scale", &reading.depth_scale);
-  ReadNumberFlag(flags, "min_depth", &reading.depth_filter.min_depth);
-  ReadNumberFlag(flags, "max_depth", &reading.depth_filter.max_depth);
+  OptionList scale;
+  scale.Number("depth_scale", &reading.depth_scale, Range::AtLeast(0), "", "");
+  ReadFlag(flags, scale.options().front());
+  OptionList depth;
+  reading.depth.List(&depth);
+  for (const Option& option : depth.options()) ReadFlag(flags, option);
   std::optional<Calibration> found = FindCalibration(root.string());
   if (found) {
     reading.depth_scale = found->depth_scale;
@@ -122,7 +126,9 @@ void ReadSource(const fs::path& root, RecordedRun* run) {
     // Intrinsics of the command line overrule those beside the sequence.
     found = FindCalibration(run->sequence);
   }
-  if (found) run->camera = reading.camera = found->camera;
+  if (!found) return;
+  run->camera = reading.camera = found->camera;
+  run->camera->noise = reading.depth.noise;
 }
 
 std::vector<RecordedSurface> ReadSurfaces(const fs::path& folder) {

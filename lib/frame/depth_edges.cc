@@ -8,7 +8,7 @@ namespace splitfusion {
 
 SPLITFUSION_VECTOR_CLONES
 void MarkEdges(const float* depth, int stride, int width, float focal_length,
-               std::uint8_t* edges) {
+               const DepthNoise& noise, std::uint8_t* edges) {
   for (int u = 0; u < width; ++u) {
     const float z = depth[u];
     int is_edge = 0;
@@ -16,7 +16,8 @@ void MarkEdges(const float* depth, int stride, int width, float focal_length,
       const int offsets[] = {-step, step, -step * stride, step * stride};
       for (const int offset : offsets) {
         const float other = depth[u + offset];
-        const float jump = EdgeJump(other < z ? other : z, step, focal_length);
+        const float jump =
+            EdgeJump(other < z ? other : z, step, focal_length, noise);
         is_edge |= (other > 0) & IsDepthJump(z, other, jump);
       }
     }

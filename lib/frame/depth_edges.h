@@ -10,10 +10,11 @@ namespace splitfusion {
 /// Jump of depth between pixels `step` apart that is an edge: more than noise
 /// or a surface seen at 79 degrees (tan = 5) gives. Metres; the focal length in
 /// pixels.
-inline float EdgeJump(float depth, int step, float focal_length) {
+inline float EdgeJump(float depth, int step, float focal_length,
+                      const DepthNoise& noise) {
   constexpr DepthTolerance<float> kNoise = {0.005f};
   constexpr float kSlope = 5;
-  return kNoise.At(depth) + kSlope * depth * step / focal_length;
+  return kNoise.At(depth, noise) + kSlope * depth * step / focal_length;
 }
 
 /// Pixels beyond the image that MarkEdges() reads, on every side.
@@ -25,7 +26,7 @@ constexpr int kEdgeBorder = 2;  // Layout.
 /// `depth`: the row in an image of metres, 0 = none, with a border of zeros of
 /// kEdgeBorder pixels; `stride` its pixels from one row to the next.
 void MarkEdges(const float* depth, int stride, int width, float focal_length,
-               std::uint8_t* edges);
+               const DepthNoise& noise, std::uint8_t* edges);
 
 }  // namespace splitfusion
 

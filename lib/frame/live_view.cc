@@ -18,7 +18,8 @@ constexpr int kEdgeRadius = 2;  // Pixels.
 /// Fills pixels without depth whose neighbours agree: single lost pixels would
 /// leave holes as wide as a voxel where the camera stands still.
 cv::Mat_<float> WithoutPinholes(const cv::Mat_<float>& depth,
-                                float focal_length) {
+                                const PinholeCamera& camera) {
+  const auto focal_length = static_cast<float>(camera.fx);
   cv::Mat_<float> filled = depth.clone();
   tbb::parallel_for(1, std::max(1, depth.rows - 1), [&](int v) {
     for (int u = 1; u + 1 < depth.cols; ++u) {
@@ -32,7 +33,8 @@ cv::Mat_<float> WithoutPinholes(const cv::Mat_<float>& depth,
         low = std::min(low, z), high = std::max(high, z);
       }
       if (count >= 6 &&
-          !IsDepthJump(low, high, EdgeJump(low, 2, focal_length))) {
+          !IsDepthJump(low, high,
+                       EdgeJump(low, 2, focal_length, camera.noise))) {
         filled(v, u) = sum / count;
       }
     }
@@ -53,15 +55,15 @@ GreyLevel MakeGreyLevel(const cv::Mat& grey, double sigma) {
 
 /// 255 where a pixel lies next to a jump of depth (either side of it).
 cv::Mat_<std::uint8_t> DepthEdges(const cv::Mat_<float>& depth,
-                                  float focal_length) {
+                                  const PinholeCamera& camera) {
   cv::Mat_<float> bordered;
   cv::copyMakeBorder(depth, bordered, kEdgeBorder, kEdgeBorder, kEdgeBorder,
                      kEdgeBorder, cv::BORDER_CONSTANT, cv::Scalar(0));
   cv::Mat_<std::uint8_t> edges(depth.size());
   tbb::parallel_for(0, depth.rows, [&](int v) {
     MarkEdges(bordered[v + kEdgeBorder] + kEdgeBorder,
-              static_cast<int>(bordered.step1()), depth.cols, focal_length,
-              edges[v]);
+              static_cast<int>(bordered.step1()), depth.cols,
+              static_cast<float>(camera.fx), camera.noise, edges[v]);
   });
   cv::Mat_<std::uint8_t> wide;
   const int size = 2 * (kEdgeRadius - 1) + 1;
@@ -86,8 +88,7 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
   }
   LiveView view;
   view.camera = camera;
-  const float focal_length = static_cast<float>(camera.fx);
-  view.depth = WithoutPinholes(depth, focal_length);
+  view.depth = WithoutPinholes(depth, camera);
   view.map = ComputePointMap(view.depth, camera, options);
   view.color = color;
   cv::Mat grey;
@@ -95,7 +96,7 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
   grey.convertTo(grey, CV_32F, 1.0 / 255);
   tbb::parallel_for(
       0, 2, [&](int k) { view.grey[k] = MakeGreyLevel(grey, kGreySigma[k]); });
-  view.edges = DepthEdges(view.depth, focal_length);
+  view.edges = DepthEdges(view.depth, camera);
   view.labels.create(depth.size());
   view.labels.setTo(0);
   view.uncertain.create(depth.size());
@@ -106,10 +107,10 @@ LiveView MakeLiveView(const PinholeCamera& camera, const cv::Mat& depth,
       const cv::Vec3f& p = view.map.points(v, u);
       const cv::Vec3f& n = view.map.normals(v, u);
       const float length = std::sqrt(p.dot(p));
-      view.confidence(v, u) =
-          length > 0
-              ? DepthConfidence(p[2]) * std::max(0.0f, -p.dot(n) / length)
-              : 0.0f;
+      view.confidence(v, u) = length > 0
+                                  ? camera.noise.Confidence(p[2]) *
+                                        std::max(0.0f, -p.dot(n) / length)
+                                  : 0.0f;
     }
   });
   return view;

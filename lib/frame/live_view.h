@@ -36,15 +36,6 @@ struct LiveView {
   cv::Mat_<std::uint8_t> uncertain;  ///< 255: belongs to no surface for sure.
 };
 
-/// Depth at which the confidence of a pixel is 1, metres: noise of 3 mm.
-constexpr float kReferenceDepth = 1.4f;
-
-/// Confidence (sigma(kReferenceDepth) / sigma(depth))^2, at most 1.
-inline float DepthConfidence(float depth) {
-  const float ratio = DepthSigma(kReferenceDepth) / DepthSigma(depth);
-  return ratio < 1 ? ratio * ratio : 1.0f;
-}
-
 /// Grey value of a BGR colour, 0..1.
 inline float Intensity(const cv::Vec3b& bgr) {
   return (0.114f * bgr[0] + 0.587f * bgr[1] + 0.299f * bgr[2]) / 255;  // Unit.

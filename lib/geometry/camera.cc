@@ -28,7 +28,7 @@ void CheckFieldOfView(const std::string& axis, double f, double c, int size) {
 }  // namespace
 
 PinholeCamera PinholeCamera::Subsampled(int stride) const {
-  PinholeCamera camera;
+  PinholeCamera camera = *this;
   camera.width = (width + stride - 1) / stride;
   camera.height = (height + stride - 1) / stride;
   camera.fx = fx / stride;

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "splitfusion/lib/geometry/depth_noise.h"
+
 namespace splitfusion {
 
 /// What is nearer to a camera than this is not seen, metres.
@@ -12,12 +14,13 @@ constexpr float kNearPlane = 0.05f;
 /// Pinhole camera without distortion. Camera frame: x right, y down, z forward;
 /// pixel (0, 0) is the centre of the top-left pixel.
 struct PinholeCamera {
-  int width = 0;   ///< Pixels.
-  int height = 0;  ///< Pixels.
-  double fx = 0;   ///< Focal length, pixels.
-  double fy = 0;   ///< Focal length, pixels.
-  double cx = 0;   ///< Principal point, pixels.
-  double cy = 0;   ///< Principal point, pixels.
+  int width = 0;     ///< Pixels.
+  int height = 0;    ///< Pixels.
+  double fx = 0;     ///< Focal length, pixels.
+  double fy = 0;     ///< Focal length, pixels.
+  double cx = 0;     ///< Principal point, pixels.
+  double cy = 0;     ///< Principal point, pixels.
+  DepthNoise noise;  ///< Of its depth images.
 
   /// Pixel of a point of the camera frame (metres); the point must have z > 0.
   template <typename T>
@@ -57,7 +60,7 @@ struct PinholeCamera {
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(width, height, fx, fy, cx, cy);
+    (*archive)(width, height, fx, fy, cx, cy, noise);
   }
 
   /// @throw InputError if a size or focal length is not positive, or a view ray

@@ -16,12 +16,12 @@ constexpr double kNoiseSigmas = 3;
 template <typename T>
 struct DepthTolerance {
   T base = 0;               ///< Metres.
-  T sigmas = kNoiseSigmas;  ///< Of DepthSigma().
+  T sigmas = kNoiseSigmas;  ///< Of the noise.
 
-  /// At z-depth `depth`, metres.
+  /// At z-depth `depth`, metres, of a sensor with this noise.
   template <typename Z>
-  auto At(Z depth) const {
-    return base + sigmas * DepthSigma(depth);
+  auto At(Z depth, const DepthNoise& noise) const {
+    return base + sigmas * noise.Sigma(depth);
   }
 };
 

@@ -17,6 +17,7 @@ class NormalEstimator {
   NormalEstimator(const cv::Mat& depth, const PinholeCamera& camera,
                   const PointMapOptions& options)
       : options_(options),
+        noise_(camera.noise),
         width_(depth.cols),
         inverse_fx_(static_cast<float>(1 / camera.fx)),
         inverse_fy_(static_cast<float>(1 / camera.fy)),
@@ -71,10 +72,11 @@ class NormalEstimator {
     const DepthTolerance<double> edge = {options_.edge_offset,
                                          options_.edge_factor};
     constexpr float kBelow = 0.9f;  // Maths.
-    return std::min(kBelow * z, static_cast<float>(edge.At(z)));
+    return std::min(kBelow * z, static_cast<float>(edge.At(z, noise_)));
   }
 
   const PointMapOptions& options_;
+  const DepthNoise noise_;
   const int width_;
   const float inverse_fx_, inverse_fy_, cx_, cy_;
   cv::Mat_<float> depth_;          // With a border of no depth.
@@ -107,6 +109,7 @@ PointMap ComputePointMap(const cv::Mat& depth, const PinholeCamera& camera,
   }
   options.Check();
   PointMap map;
+  map.noise = camera.noise;
   map.points.create(depth.size());
   map.normals.create(depth.size());
   const NormalEstimator estimator(depth, camera, options);

@@ -20,7 +20,8 @@ DepthState LookAt(const LiveView& live, int surface,
   }
   const float depth = live.depth(v, u);
   const DepthState state = ClassifyDepth(
-      depth, point.z(), DepthTolerance<float>{truncation}.At(depth));
+      depth, point.z(),
+      DepthTolerance<float>{truncation}.At(depth, live.camera.noise));
   return state == DepthState::kObserved && live.labels(v, u) != surface
              ? DepthState::kUnmeasured
              : state;

@@ -3,10 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
-#include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
@@ -16,12 +14,13 @@ namespace {
 constexpr DepthTolerance<float> kAlike = {0.01f, 5};
 
 /// (u, v) must not lie on the image border.
-bool IsFlying(const cv::Mat& depth, int u, int v) {
+bool IsFlying(const cv::Mat& depth, const DepthNoise& noise, int u, int v) {
   const float z = depth.at<float>(v, u);
   constexpr std::array<std::array<int, 2>, 4> kDirections = {
       {{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
   const auto compare = [&](int other_u, int other_v) {
-    return ClassifyDepth(depth.at<float>(other_v, other_u), z, kAlike.At(z));
+    return ClassifyDepth(depth.at<float>(other_v, other_u), z,
+                         kAlike.At(z, noise));
   };
   int alike = 0;
   bool between = false;
@@ -38,12 +37,18 @@ bool IsFlying(const cv::Mat& depth, int u, int v) {
 
 }  // namespace
 
-void DepthFilterOptions::Check() const {
-  CheckOption(std::isfinite(min_depth) && min_depth >= 0, "min_depth",
-              min_depth, "metres >= 0");
-  CheckOption(max_depth > min_depth && max_depth <= 100, "max_depth", max_depth,
-              "metres above min_depth, <= 100");
+void DepthOptions::List(OptionList* list) {
+  list->Number("min_depth", &min_depth, Range::AtLeast(0), "metres",
+               "Nearer depth is dropped.")
+      .common = true;
+  list->Number("max_depth", &max_depth, {0, 100}, "metres",
+               "Farther depth is dropped.")
+      .common = true;
+  list->Demand(max_depth > min_depth, "max_depth", "metres > min_depth");
+  list->Part("noise_", &noise);
 }
+
+void DepthOptions::Check() const { CheckOptions(*this); }
 
 cv::Mat DepthInMetres(const cv::Mat& raw, double depth_scale) {
   cv::Mat depth;
@@ -55,21 +60,21 @@ void RemoveOutOfRange(double min_depth, double max_depth, cv::Mat* depth) {
   depth->setTo(0, (*depth < min_depth) | (*depth > max_depth));
 }
 
-void RemoveFlyingPixels(cv::Mat* depth) {
+void RemoveFlyingPixels(const DepthNoise& noise, cv::Mat* depth) {
   const cv::Mat source = depth->clone();
   tbb::parallel_for(1, source.rows - 1, [&](int v) {
     for (int u = 1; u + 1 < source.cols; ++u) {
-      if (source.at<float>(v, u) > 0 && IsFlying(source, u, v)) {
+      if (source.at<float>(v, u) > 0 && IsFlying(source, noise, u, v)) {
         depth->at<float>(v, u) = 0;
       }
     }
   });
 }
 
-cv::Mat FilterDepth(const cv::Mat& depth, const DepthFilterOptions& options) {
+cv::Mat FilterDepth(const cv::Mat& depth, const DepthOptions& options) {
   cv::Mat filtered = depth.clone();
   RemoveOutOfRange(options.min_depth, options.max_depth, &filtered);
-  RemoveFlyingPixels(&filtered);
+  RemoveFlyingPixels(options.noise, &filtered);
   return filtered;
 }
 

@@ -3,14 +3,20 @@
 
 #include <opencv2/core.hpp>
 
+#include "splitfusion/lib/geometry/depth_noise.h"
+
 namespace splitfusion {
 
-/// What is done to a depth image before it is used.
-struct DepthFilterOptions {
+/// What is known of a depth sensor, and of its depth used.
+struct DepthOptions {
   double min_depth = 0.4;  ///< Metres; nearer measurements are dropped.
   double max_depth = 5.0;  ///< Metres; farther measurements are dropped.
 
-  /// @throw InputError if a value is out of its range.
+  DepthNoise noise;  ///< Of the sensor.
+
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+  /// @throw OptionError if a value is out of its range.
   void Check() const;
 };
 
@@ -24,11 +30,11 @@ void RemoveOutOfRange(double min_depth, double max_depth, cv::Mat* depth);
 /// Drops flying pixels: those with one neighbour clearly nearer and the
 /// opposite one clearly farther than themselves, and with hardly any neighbour
 /// at their own depth. "Clearly" is five times the axial noise and 1 cm.
-void RemoveFlyingPixels(cv::Mat* depth);
+void RemoveFlyingPixels(const DepthNoise& noise, cv::Mat* depth);
 
 /// Applies range and flying-pixel removal, in this order, to an HxW 32FC1 depth
 /// image (metres, 0 = none).
-cv::Mat FilterDepth(const cv::Mat& depth, const DepthFilterOptions& options);
+cv::Mat FilterDepth(const cv::Mat& depth, const DepthOptions& options);
 
 }  // namespace splitfusion
 

@@ -30,6 +30,7 @@ Calibration ResolveCalibration(const std::string& folder,
   }
   Calibration calibration = file.value_or(Calibration());
   if (options.camera) calibration.camera = *options.camera;
+  calibration.camera.noise = options.depth.noise;
   if (options.depth_scale > 0) calibration.depth_scale = options.depth_scale;
   calibration.Check();
   return calibration;
@@ -72,7 +73,7 @@ void ReaderOptions::Check() const {
   CheckOption(std::isfinite(depth_scale) && depth_scale >= 0, "depth_scale",
               depth_scale, "units per metre > 0, or 0 for the file's");
   if (camera) camera->Check();
-  depth_filter.Check();
+  depth.Check();
 }
 
 ImageFolderReader::ImageFolderReader(const std::string& folder,
@@ -178,8 +179,8 @@ Frame ImageFolderReader::Read(int i) const {
   CheckSize(color_path.string(), frame.color.size(), ExpectedSize());
   const cv::Mat raw = format_->ReadDepth(depth_path.string());
   CheckSize(depth_path.string(), raw.size(), ExpectedSize());
-  frame.depth = FilterDepth(DepthInMetres(raw, calibration_.depth_scale),
-                            options_.depth_filter);
+  frame.depth =
+      FilterDepth(DepthInMetres(raw, calibration_.depth_scale), options_.depth);
   return frame;
 }
 

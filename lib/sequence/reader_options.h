@@ -18,7 +18,7 @@ struct ReaderOptions {
   std::optional<PinholeCamera> camera;
   /// Units a metre; replaces what the format finds; 0 = that.
   double depth_scale = 0;
-  DepthFilterOptions depth_filter;  ///< Applied to every depth image.
+  DepthOptions depth;  ///< Of every depth image.
   /// Frames whose images are missing or broken are left out; indices stay.
   bool skip_bad_frames = false;
 

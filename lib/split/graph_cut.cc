@@ -40,7 +40,8 @@ class EdgeWeight {
                   PlaneDistance(nq, step)});
     const DepthTolerance<double> step_scale = {options_.step_offset,
                                                options_.step_factor};
-    const auto scale = static_cast<float>(step_scale.At(points_.points(p)[2]));
+    const auto scale =
+        static_cast<float>(step_scale.At(points_.points(p)[2], points_.noise));
     const float ratio = distance / scale;
     if (ratio > 3) return 0;
     const float exponent = ratio * ratio + NormalTerm(np, nq, step);

@@ -23,7 +23,7 @@ bool Touches(const PointMap& points, const cv::Mat_<uchar>& body, int u,
       const cv::Vec3f step = points.points(j, i) - point;
       const float sideways = std::hypot(step[0], step[1]);
       if (!IsDepthJump(point[2], points.points(j, i)[2],
-                       sideways + kNoiseAlone.At(point[2]))) {
+                       sideways + kNoiseAlone.At(point[2], points.noise))) {
         return true;
       }
     }

@@ -21,7 +21,8 @@ cv::Mat_<uchar> UnexplainedPixels(int surface, const ComparedDepth& compared) {
 }
 
 cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
-                         const cv::Mat_<uchar>& seeds, const cv::Mat& depth) {
+                         const cv::Mat_<uchar>& seeds, const cv::Mat& depth,
+                         const DepthNoise& noise) {
   cv::Mat_<uchar> extent = seeds.clone();
   std::vector<cv::Point> front;
   cv::findNonZero(seeds, front);
@@ -33,7 +34,7 @@ cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
       if (!next.inside({0, 0, extent.cols, extent.rows}) || !open(next) ||
           extent(next) ||
           IsDepthJump(depth.at<float>(at), depth.at<float>(next),
-                      kSmoothDepth.At(depth.at<float>(at)))) {
+                      kSmoothDepth.At(depth.at<float>(at), noise))) {
         continue;
       }
       extent(next) = 255;
@@ -49,7 +50,7 @@ cv::Mat_<uchar> MissedExtent(int surface, const cv::Mat_<uchar>& others,
   const cv::Mat_<uchar> open = UnexplainedPixels(surface, compared) & ~others;
   return GrowOver(open,
                   AgreeingPixels(surface, compared.labels, compared.agreement),
-                  depth);
+                  depth, compared.noise);
 }
 
 cv::Mat_<uchar> Protrusions(const LabelImage& labels,
@@ -60,9 +61,13 @@ cv::Mat_<uchar> Protrusions(const LabelImage& labels,
   const cv::Mat_<uchar> unexplained = UnexplainedPixels(0, compared);
   const cv::Mat_<uchar> unmapped =
       (compared.agreement == unknown) & (compared.background == unknown);
-  const cv::Mat_<uchar> grown = GrowOver(unexplained, labels > 0, depth) |
-                                GrowOver(unexplained | unmapped, missed, depth);
-  return grown & (labels == 0);
+  const auto grow = [&](const cv::Mat_<uchar>& open,
+                        const cv::Mat_<uchar>& seeds) {
+    return GrowOver(open, seeds, depth, compared.noise);
+  };
+  return (grow(unexplained, labels > 0) |
+          grow(unexplained | unmapped, missed)) &
+         (labels == 0);
 }
 
 }  // namespace splitfusion

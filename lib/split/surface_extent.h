@@ -17,7 +17,8 @@ cv::Mat_<uchar> UnexplainedPixels(int surface, const ComparedDepth& compared);
 /// although neither a detection nor the prediction covers it. `depth`: HxW
 /// 32FC1, metres.
 cv::Mat_<uchar> GrowOver(const cv::Mat_<uchar>& open,
-                         const cv::Mat_<uchar>& seeds, const cv::Mat& depth);
+                         const cv::Mat_<uchar>& seeds, const cv::Mat& depth,
+                         const DepthNoise& noise);
 
 /// Where a surface that no detection covers may have moved to: what hangs
 /// together with its agreeing pixels and only it can explain, outside of the

@@ -130,11 +130,12 @@ void PriorOptions::List(OptionList* list) {
                "The same for the background.");
 }
 
-ComparedDepth CompareDepth(const cv::Mat& depth,
+ComparedDepth CompareDepth(const cv::Mat& depth, const DepthNoise& noise,
                            const SurfacePrediction& prediction,
                            const PriorOptions& options) {
   ComparedDepth compared;
   compared.labels = prediction.labels;
+  compared.noise = noise;
   compared.agreement.create(depth.size());
   compared.background.create(depth.size());
   const bool has_background = !prediction.background.empty();
@@ -145,10 +146,10 @@ ComparedDepth CompareDepth(const cv::Mat& depth,
       const DepthTolerance<double> surface = {options.surface_gate};
       const auto& gate = prediction.labels(v, u) > 0 ? surface : background;
       compared.agreement(v, u) = static_cast<uchar>(
-          ClassifyDepth(live, prediction.depth(v, u), gate.At(live)));
+          ClassifyDepth(live, prediction.depth(v, u), gate.At(live, noise)));
       compared.background(v, u) = static_cast<uchar>(
           ClassifyDepth(live, has_background ? prediction.background(v, u) : 0,
-                        background.At(live)));
+                        background.At(live, noise)));
     }
   });
   return compared;

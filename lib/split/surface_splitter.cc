@@ -109,7 +109,8 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
   ++frames_;
   SurfacePrediction prior = CompletePrediction(
       prediction, last_, Followed(tracks_), {camera_.width, camera_.height});
-  ComparedDepth compared = CompareDepth(frame.depth, prior, options_.prior);
+  ComparedDepth compared =
+      CompareDepth(frame.depth, camera_.noise, prior, options_.prior);
   SplitResult result;
   const Input input{frame, points, prior, compared};
   const JoinedDetections joined = JoinHeldParts(detections, groups_, points);

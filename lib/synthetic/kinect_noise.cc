@@ -130,7 +130,7 @@ class NoiseModel {
     const auto step = static_cast<float>(options_.disparity_step_px);
     const auto fb = static_cast<float>(options_.focal_times_baseline);
     const float depth_step = z * z / fb * step;
-    const float sigma = DepthSigma(z);
+    const float sigma = camera_.noise.Sigma(z);
     const float variance =
         std::max(0.0f, sigma * sigma - depth_step * depth_step / 12);
     const float noisy = z + std::sqrt(variance) * axial_(v, u);

@@ -100,7 +100,7 @@ std::vector<TrackedPoint> PointTracks::Find(
       continue;
     }
     point.target = live.camera.BackProject(track.pixel.x(), track.pixel.y(), z);
-    point.weight = DepthConfidence(z);
+    point.weight = live.camera.noise.Confidence(z);
     found.push_back(point);
   }
   return found;
@@ -122,8 +122,9 @@ void PointTracks::Begin(int surface, const std::vector<ModelSample>& samples,
     if (!pixel || !IsCertain(live, surface, pixel->y(), pixel->x())) continue;
     std::uint8_t& place = taken(pixel->y() / cell, pixel->x() / cell);
     const float z = live.depth(pixel->y(), pixel->x());
-    if (place != 0 || std::abs(z - point.z()) * std::sqrt(DepthConfidence(z)) >
-                          kAgreeingDistance / 2) {
+    const float deviation =
+        std::abs(z - point.z()) * std::sqrt(live.camera.noise.Confidence(z));
+    if (place != 0 || deviation > kAgreeingDistance / 2) {
       continue;
     }
     place = 1;

@@ -138,10 +138,11 @@ class Votes {
     first_ = to.tl() - from.br() + cv::Point(1, 1);
     size_ = to.size() + from.size() - cv::Size(1, 1);
     votes_.reserve(size_.area());
+    const float farthest = z + kOneBody.At(z, camera.noise);
     for (int y = 0; y < size_.height; ++y) {
       for (int x = 0; x < size_.width; ++x) {
         votes_.push_back(
-            VoteFor(first_ + cv::Point(x, y), model, live, z + kOneBody.At(z)));
+            VoteFor(first_ + cv::Point(x, y), model, live, farthest));
       }
     }
   }

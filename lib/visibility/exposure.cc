@@ -14,7 +14,8 @@ double Exposure(const cv::Mat_<float>& model, int step, const LiveView& live,
       if (live.labels(v * step, u * step) == surface) {
         ++seen;
       } else {
-        hidden += ClassifyDepth(depth, model(v, u), kOneBody.At(depth)) ==
+        hidden += ClassifyDepth(depth, model(v, u),
+                                kOneBody.At(depth, live.camera.noise)) ==
                   DepthState::kOccluded;
       }
     }

@@ -47,7 +47,8 @@ bool SeenSpace::LookedThrough(const View& view,
   if (!pixel) return false;
   const float seen = view.depth(pixel->y(), pixel->x());
   // Both are noisy.
-  const float tolerance = kOneBody.At(point.z()) + kNoiseAlone.At(seen);
+  const float tolerance = kOneBody.At(point.z(), camera_.noise) +
+                          kNoiseAlone.At(seen, camera_.noise);
   return ClassifyDepth(seen, point.z(), tolerance) == DepthState::kFree;
 }
 

@@ -61,7 +61,7 @@ TEST_F(LostPartsTest, APartBesideItselfIsPairedWithTheNearestOfTheModel) {
     EXPECT_GE(pixel.x(), 99);
     EXPECT_LT(pixel.x(), 120);
     EXPECT_LT((pair.target - pair.model.point).norm(), gates_.lost_distance);
-    EXPECT_EQ(pair.weight, DepthConfidence(pair.target.z()));
+    EXPECT_EQ(pair.weight, DepthNoise().Confidence(pair.target.z()));
   }
 }
 

@@ -64,7 +64,7 @@ TEST_F(AssociationTest, AModelOnTheLiveSurfaceIsAccepted) {
   for (const Correspondence& c : association.correspondences) {
     EXPECT_LT((c.target - c.model.point).norm(), 1e-5);
     EXPECT_LT((c.target_normal - c.warped_normal).norm(), 1e-3);
-    EXPECT_EQ(c.weight, DepthConfidence(c.target.z()));
+    EXPECT_EQ(c.weight, DepthNoise().Confidence(c.target.z()));
   }
 }
 
@@ -139,8 +139,8 @@ TEST_F(AssociationTest, Distance) {
 TEST_F(AssociationTest, TheDistanceGateOpensWithTheNoiseOfDepth) {
   live_ = View(WallDepth(camera_, 4));
   gates_.distance = 0.01;
-  samples_ = {Sample(80, 60, 4.f + 2 * DepthSigma(4.f)),
-              Sample(80, 60, 4.f + 4 * DepthSigma(4.f))};
+  samples_ = {Sample(80, 60, 4.f + 2 * DepthNoise().Sigma(4.f)),
+              Sample(80, 60, 4.f + 4 * DepthNoise().Sigma(4.f))};
   const AssociationCounts counts = Run().counts;
   EXPECT_EQ(counts.accepted, 1);
   EXPECT_EQ(Rejected(counts, "distance"), 1);

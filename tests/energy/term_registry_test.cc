@@ -190,8 +190,9 @@ TEST(ParseEnergy, ValuesMustBeNumbersInRange) {
   ExpectRefused("arap(weight=1e999)", "arap.weight = 1e999: expected >= 0");
   ExpectRefused("arap(weight=-1)", "arap.weight = -1: expected >= 0");
   ExpectRefused("arap(scale=0)", "arap.scale = 0: expected metres > 0");
-  ExpectRefused("point_to_plane(loss=l2)",
-                "point_to_plane.loss = l2: expected trivial, huber, tukey or cauchy");
+  ExpectRefused(
+      "point_to_plane(loss=l2)",
+      "point_to_plane.loss = l2: expected trivial, huber, tukey or cauchy");
 }
 
 }  // namespace

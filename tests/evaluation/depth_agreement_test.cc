@@ -161,7 +161,7 @@ TEST_F(DepthAgreementTest, SaysWhatIsMissing) {
   folder_.Write("run/options.flags", "--sequence=/no/such/folder\n");
   ExpectRefused("/no/such/folder: expected the folder of the sequence");
   folder_.Write("run/options.flags", "--min_depth=near\n");
-  ExpectRefused("options.flags: --min_depth=near: expected a number");
+  ExpectRefused("options.flags: --min_depth=near: expected metres >= 0");
 }
 
 }  // namespace

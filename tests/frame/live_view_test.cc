@@ -28,11 +28,12 @@ TEST(LiveView, AWallHasPointsNormalsAndNoEdge) {
 }
 
 TEST(LiveView, ConfidenceFallsWithTheNoiseOfDepth) {
-  EXPECT_EQ(DepthConfidence(0.5f), 1);
-  EXPECT_NEAR(DepthConfidence(kReferenceDepth), 1, 1e-6);
-  const float ratio = DepthSigma(kReferenceDepth) / DepthSigma(3.f);
-  EXPECT_NEAR(DepthConfidence(3), ratio * ratio, 1e-6);
-  EXPECT_LT(DepthConfidence(4), DepthConfidence(3));
+  const DepthNoise noise;
+  EXPECT_EQ(noise.Confidence(0.5f), 1);
+  EXPECT_NEAR(noise.Confidence(1.4f), 1, 1e-6);
+  const double ratio = noise.Sigma(1.4) / noise.Sigma(3.0);
+  EXPECT_NEAR(noise.Confidence(3), ratio * ratio, 1e-6);
+  EXPECT_LT(noise.Confidence(4), noise.Confidence(3));
 }
 
 TEST(LiveView, MarksBothSidesOfAStep) {
@@ -49,6 +50,19 @@ TEST(LiveView, MarksBothSidesOfAStep) {
       EXPECT_EQ(view.edges(60, u), 0) << u;
     }
   }
+}
+
+TEST(LiveView, AStepWithinTheNoiseOfTheSensorIsNone) {
+  PinholeCamera camera = SmallCamera();
+  cv::Mat_<float> depth = WallDepth(camera, 1.5);
+  depth.colRange(0, 80).setTo(1.35f);
+  const auto edges = [&] {
+    return cv::countNonZero(
+        MakeLiveView(camera, depth, PlainColor(camera, {1, 2, 3})).edges);
+  };
+  EXPECT_GT(edges(), 0);
+  camera.noise.least = 0.04;
+  EXPECT_EQ(edges(), 0);
 }
 
 TEST(LiveView, FillsPinholesButNoHolesAndNoEdges) {

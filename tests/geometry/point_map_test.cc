@@ -77,10 +77,11 @@ TEST(ComputePointMap, RejectsForeignImagesAndOptions) {
                InputError);
 }
 
-TEST(DepthSigma, GrowsWithDistance) {
-  EXPECT_NEAR(DepthSigma(0.4), 0.0012, 1e-9);
-  EXPECT_LT(DepthSigma(1.0), DepthSigma(2.0));
-  EXPECT_LT(DepthSigma(2.0f), DepthSigma(4.0f));
+TEST(DepthNoise, GrowsWithDistance) {
+  const DepthNoise noise;
+  EXPECT_NEAR(noise.Sigma(0.4), 0.0012, 1e-9);
+  EXPECT_LT(noise.Sigma(1.0), noise.Sigma(2.0));
+  EXPECT_LT(noise.Sigma(2.0f), noise.Sigma(4.0f));
 }
 
 TEST(SumWindows, CountsThePixelsAtTheCentresDepth) {

@@ -37,7 +37,7 @@ TEST(RemoveFlyingPixels, DropsPixelsBetweenTwoSurfaces) {
   cv::Mat depth = Step();
   depth.at<float>(5, 10) = 1.5f;
   depth.at<float>(12, 9) = 1.3f;
-  RemoveFlyingPixels(&depth);
+  RemoveFlyingPixels({}, &depth);
   EXPECT_EQ(depth.at<float>(5, 10), 0.0f);
   EXPECT_EQ(depth.at<float>(12, 9), 0.0f);
   EXPECT_EQ(cv::countNonZero(depth), 398);
@@ -46,26 +46,43 @@ TEST(RemoveFlyingPixels, DropsPixelsBetweenTwoSurfaces) {
 TEST(RemoveFlyingPixels, DropsAColumnOfMixedPixels) {
   cv::Mat depth = Step();
   depth.col(10) = 1.5f;
-  RemoveFlyingPixels(&depth);
+  RemoveFlyingPixels({}, &depth);
   EXPECT_EQ(cv::countNonZero(depth.col(10).rowRange(1, 19)), 0);
 }
 
 TEST(RemoveFlyingPixels, KeepsCleanEdgesAndSlopes) {
   cv::Mat edge = Step();
-  RemoveFlyingPixels(&edge);
+  RemoveFlyingPixels({}, &edge);
   EXPECT_EQ(cv::countNonZero(edge), 400);
   cv::Mat_<float> slope(20, 20);
   for (int u = 0; u < 20; ++u) slope.col(u) = 1.0f + 0.015f * u;
   cv::Mat kept = slope.clone();
-  RemoveFlyingPixels(&kept);
+  RemoveFlyingPixels({}, &kept);
   EXPECT_EQ(cv::countNonZero(kept), 400);
 }
 
-TEST(DepthFilterOptions, NamesFieldValueAndBound) {
-  DepthFilterOptions options;
+TEST(RemoveFlyingPixels, KeepsWhatIsNoiseOfTheSensor) {
+  cv::Mat_<float> depth(20, 20, 1.0f);
+  depth.colRange(10, 20).setTo(1.2f);
+  depth.col(10).setTo(1.1f);
+  DepthNoise coarse;
+  coarse.least = 0.05;
+  cv::Mat kept = depth.clone(), cleaned = depth.clone();
+  RemoveFlyingPixels(coarse, &kept);
+  RemoveFlyingPixels({}, &cleaned);
+  EXPECT_EQ(cv::countNonZero(kept), 400);
+  EXPECT_LT(cv::countNonZero(cleaned), 400);
+}
+
+TEST(DepthOptions, NamesFieldValueAndBound) {
+  DepthOptions options;
   options.max_depth = 0.2;
   ExpectInputError([&] { options.Check(); },
-                   "max_depth = 0.2: expected metres above min_depth");
+                   "max_depth = 0.2: expected metres > min_depth");
+  options = {};
+  options.noise.least = 0;
+  ExpectInputError([&] { options.Check(); },
+                   "noise_least = 0: expected metres > 0");
 }
 
 }  // namespace

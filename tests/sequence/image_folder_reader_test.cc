@@ -76,12 +76,15 @@ TEST_F(ImageFolderReaderTest, ReadsAPartUnderItsOwnIndices) {
 TEST_F(ImageFolderReaderTest, OptionsReplaceTheCalibrationFile) {
   ReaderOptions options;
   options.depth_scale = 500;
+  options.depth.noise.growth = 0.001;
   EXPECT_FLOAT_EQ(
       ImageFolderReader(folder_ / "", options).Next()->depth.at<float>(0),
       2.0f);
   options.camera = PinholeCamera{32, 24, 40, 40, 15, 11};
   std::filesystem::remove(folder_ / "calibration.txt");
   EXPECT_DOUBLE_EQ(ImageFolderReader(folder_ / "", options).camera().fx, 40);
+  EXPECT_EQ(ImageFolderReader(folder_ / "", options).camera().noise.growth,
+            0.001);
   ExpectInputError([&] { ImageFolderReader reader(folder_ / ""); },
                    "neither calibration.txt nor camera.txt");
 }

@@ -60,7 +60,7 @@ class LayeredScene {
     frame.color = color_.clone();
     frame.depth = depth_.clone();
     for (float& z : cv::Mat_<float>(frame.depth)) {
-      z += static_cast<float>(random_.gaussian(0.5 * DepthSigma(z)));
+      z += static_cast<float>(random_.gaussian(0.5 * DepthNoise().Sigma(z)));
     }
     return frame;
   }

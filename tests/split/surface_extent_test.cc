@@ -29,18 +29,20 @@ TEST(GrowOver, FollowsTheDepthAndStopsAtAJump) {
   scene.Add({20, 20, 60, 20}, 2.0, 1).Add({80, 20, 40, 20}, 1.6, 2);
   const cv::Mat_<uchar> open = RectMask({0, 20, 160, 20});
   const cv::Mat_<uchar> extent =
-      GrowOver(open, RectMask({20, 20, 10, 20}), scene.depth());
+      GrowOver(open, RectMask({20, 20, 10, 20}), scene.depth(), DepthNoise());
   EXPECT_EQ(cv::norm(extent, scene.Truth(1), cv::NORM_INF), 0);
 }
 
 TEST(GrowOver, NeedsASeedAndOpenPixels) {
   const LayeredScene scene;
   const cv::Mat_<uchar> nothing(120, 160, uchar(0));
-  EXPECT_EQ(cv::countNonZero(GrowOver(~nothing, nothing, scene.depth())), 0);
+  EXPECT_EQ(cv::countNonZero(
+                GrowOver(~nothing, nothing, scene.depth(), DepthNoise())),
+            0);
   const cv::Mat_<uchar> seeds = RectMask({20, 20, 10, 20});
-  EXPECT_EQ(
-      cv::norm(GrowOver(nothing, seeds, scene.depth()), seeds, cv::NORM_INF),
-      0);
+  EXPECT_EQ(cv::norm(GrowOver(nothing, seeds, scene.depth(), DepthNoise()),
+                     seeds, cv::NORM_INF),
+            0);
 }
 
 /// Card 1 where it was predicted, with an arm in front of the background and

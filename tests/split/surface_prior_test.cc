@@ -17,7 +17,8 @@ TEST(CompareDepth, TellsNearerFartherAndTheSame) {
   SurfacePrediction prediction;
   prediction.depth = (cv::Mat_<float>(1, 6) << 1, 0, 1, 1, 1, 1);
   prediction.labels = LabelImage(1, 6, std::uint16_t(0));
-  cv::Mat_<uchar> agreement = CompareDepth(live, prediction, {}).agreement;
+  cv::Mat_<uchar> agreement =
+      CompareDepth(live, DepthNoise(), prediction, {}).agreement;
   EXPECT_EQ(At(agreement, 0), DepthState::kUnmeasured);
   EXPECT_EQ(At(agreement, 1), DepthState::kUnmeasured);
   EXPECT_EQ(At(agreement, 2), DepthState::kObserved);
@@ -26,7 +27,7 @@ TEST(CompareDepth, TellsNearerFartherAndTheSame) {
   // The background does not move: its gate is narrower than a surface's.
   EXPECT_EQ(At(agreement, 5), DepthState::kFree);
   prediction.labels.setTo(1);
-  agreement = CompareDepth(live, prediction, {}).agreement;
+  agreement = CompareDepth(live, DepthNoise(), prediction, {}).agreement;
   EXPECT_EQ(At(agreement, 5), DepthState::kObserved);
 }
 
@@ -35,10 +36,11 @@ TEST(CompareDepth, SeesTheBackgroundBehindASurface) {
   SurfacePrediction prediction;
   prediction.depth = (cv::Mat_<float>(1, 3) << 1, 1, 1);
   prediction.labels = LabelImage(1, 3, std::uint16_t(1));
-  EXPECT_EQ(At(CompareDepth(live, prediction, {}).background, 0),
+  EXPECT_EQ(At(CompareDepth(live, DepthNoise(), prediction, {}).background, 0),
             DepthState::kUnmeasured);
   prediction.background = (cv::Mat_<float>(1, 3) << 2, 2, 0);
-  const ComparedDepth compared = CompareDepth(live, prediction, {});
+  const ComparedDepth compared =
+      CompareDepth(live, DepthNoise(), prediction, {});
   for (int u = 0; u < 3; ++u) {
     EXPECT_EQ(At(compared.agreement, u), DepthState::kFree);
   }

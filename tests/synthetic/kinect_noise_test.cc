@@ -47,8 +47,10 @@ TEST(KinectNoise, AxialErrorFollowsTheModelAndIsUnbiased) {
   for (const float depth : {0.8f, 1.5f, 2.5f, 3.5f}) {
     const Statistics s =
         ErrorStatistics(ApplyKinectNoise(Wall(depth), Camera(), 3), depth);
-    EXPECT_NEAR(s.sigma, DepthSigma(depth), 0.1 * DepthSigma(depth)) << depth;
-    EXPECT_LT(std::abs(s.mean), 0.05 * DepthSigma(depth)) << depth;
+    EXPECT_NEAR(s.sigma, DepthNoise().Sigma(depth),
+                0.1 * DepthNoise().Sigma(depth))
+        << depth;
+    EXPECT_LT(std::abs(s.mean), 0.05 * DepthNoise().Sigma(depth)) << depth;
     EXPECT_GT(s.valid, 0.98) << depth;
   }
 }

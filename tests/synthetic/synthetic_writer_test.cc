@@ -70,7 +70,7 @@ TEST_F(SyntheticWriterTest, TheReaderReadsIt) {
   Write("seq");
   const SyntheticScene scene(TinyOptions());
   ReaderOptions options;
-  options.depth_filter = {};
+  options.depth = {};
   ImageFolderReader reader(folder_ / "seq", options);
   ASSERT_EQ(reader.size(), 4);
   EXPECT_NEAR(reader.camera().fx, scene.camera().fx, 1e-9);

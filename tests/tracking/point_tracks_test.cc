@@ -97,7 +97,7 @@ TEST(PointTracks, ArePointsOfTheModelSeenWhereTheyHaveMoved) {
   for (const TrackedPoint& point : points) {
     EXPECT_LT((point.target - point.model.point - way).norm(), 0.001);
     EXPECT_EQ(point.model.skinning.count, 1);
-    EXPECT_NEAR(point.weight, DepthConfidence(kDepth), 1e-3);
+    EXPECT_NEAR(point.weight, DepthNoise().Confidence(kDepth), 1e-3);
   }
 }
 

@@ -129,7 +129,7 @@ bool UpdateVoxel(const DepthObservation& seen, const float dither[],
   const double depth = seen.depth(v, u);
   if (role == PixelRole::kNone || !(depth > 0)) return is_certain;
   const double sdf = depth - p.z();
-  const double free_from = truncation + 3 * DepthSigma(depth);
+  const double free_from = truncation + 3 * DepthNoise().Sigma(depth);
   is_certain = is_certain && !IsClose(std::abs(sdf), truncation, kMargin) &&
                !IsClose(sdf, free_from, kMargin);
   const bool in_band = role == PixelRole::kWrite && sdf >= -truncation;

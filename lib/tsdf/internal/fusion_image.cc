@@ -72,7 +72,8 @@ FusionImage::FusionImage(const DepthObservation& observation,
            {},
            truncation_,
            observation.others_refute ? 1.0f : 0.0f,
-           static_cast<float>(options.max_weight)};
+           static_cast<float>(options.max_weight),
+           camera.noise};
   for (int z = 0; z < 8; ++z) view_.dither[z] = Dither(time, z);
   tbb::parallel_for(0, rows_,
                     [&](int tile_row) { FillTiles(observation, tile_row); });

@@ -97,7 +97,7 @@ SPLITFUSION_INLINE int Compare(const FusionView& view, const SeenSlab& at,
     // That it is empty in front of what was measured, by more than noise, is
     // certain at any range, other than where a noisy ray ended.
     const bool is_free =
-        sdf > truncation + float(kNoiseSigmas) * DepthSigma(pixel.depth);
+        sdf > truncation + float(kNoiseSigmas) * view.noise.Sigma(pixel.depth);
     // Of a pixel that only carves, within the truncation.
     const float refuted =
         sdf > -truncation ? std::min(view.refutation * pixel.weight, 0.0f) : 0;

@@ -25,6 +25,7 @@ struct FusionView {
   float truncation;  ///< Metres.
   float refutation;  ///< Of the weight of pixels that only carve, 0 or 1.
   float max_weight;
+  DepthNoise noise;
 };
 
 /// Buffers of the block that is fused into; `color`: packed, of every voxel;
