@@ -11,6 +11,8 @@ install(DIRECTORY lib cost_functions pipelines
         DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/splitfusion"
         FILES_MATCHING PATTERN "*.h"
         PATTERN internal EXCLUDE)
+install(FILES "${SPLITFUSION_INCLUDE_DIR}/splitfusion/method_hash.h"
+        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/splitfusion")
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 install(EXPORT splitfusionTargets NAMESPACE splitfusion::

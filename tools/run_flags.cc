@@ -77,7 +77,7 @@ bool IsRunFlag(const gflags::CommandLineFlagInfo& flag) {
   const std::string file =
       std::filesystem::path(flag.filename).filename().string();
   for (const char* own :
-       {"sf_run.cc", "run_flags.cc", "mask_flags.cc", "network_flags.cc",
+       {"sf_run_main.cc", "run_flags.cc", "mask_flags.cc", "network_flags.cc",
         "sequence_flags.cc", "identity_flags.cc", "method_flags.cc",
         "method_details.cc"}) {
     if (file == own) return true;

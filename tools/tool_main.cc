@@ -120,10 +120,10 @@ std::map<std::string, Flags> FlagsByFile() {
 }
 
 /// Help that fits a screen: of files with many flags the names only.
-void PrintHelp(const std::string& name, const std::string& usage) {
+void PrintHelp(const std::string& source, const std::string& usage) {
   std::map<std::string, Flags> files = FlagsByFile();
-  std::cout << usage << Described(files[name]);
-  files.erase(name);
+  std::cout << usage << Described(files[source]);
+  files.erase(source);
   const bool has_more = files.erase("method_details") > 0;
   const std::size_t many = has_more ? 7 : 20;
   for (const auto& [file, flags] : files) {
@@ -149,7 +149,7 @@ void CheckNoArguments(int argc, char** argv) {
 }
 
 /// False if the program was only asked for help.
-bool ParseFlags(int argc, char** argv, const std::string& name,
+bool ParseFlags(int argc, char** argv, const std::string& source,
                 const std::string& usage) {
   gflags::SetUsageMessage(usage);
   GFLAGS_NAMESPACE::gflags_exitfunc = [](int code) {
@@ -158,7 +158,7 @@ bool ParseFlags(int argc, char** argv, const std::string& name,
   CheckFlagfiles(argc, argv);
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, /*remove_flags=*/true);
   if (FLAGS_help || FLAGS_helpshort) {
-    PrintHelp(name, usage);
+    PrintHelp(source, usage);
     return false;
   }
   gflags::HandleCommandLineHelpFlags();
@@ -192,7 +192,7 @@ bool ParseFlags(int argc, char** argv, const std::string& name,
 }  // namespace
 
 int ToolMain(int argc, char** argv, const std::string& usage,
-             const std::function<int()>& body) {
+             const std::function<int()>& body, const std::string& source) {
   SecureStandardStreams();
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   KeepFreedMemory();
@@ -200,7 +200,9 @@ int ToolMain(int argc, char** argv, const std::string& usage,
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   try {
-    return ParseFlags(argc, argv, name, usage) ? body() : kExitDone;
+    return ParseFlags(argc, argv, source.empty() ? name : source, usage)
+               ? body()
+               : kExitDone;
   } catch (const OptionError& error) {
     std::cerr << name << ": " << (IsToolFlag(error.field()) ? "--" : "")
               << error.what() << '\n';

@@ -23,9 +23,11 @@ enum ExitCode {
 /// with kExitBadInput and one line on stderr. `--help` prints `usage` and the
 /// flags that are defined in this folder, and ends it with kExitDone.
 ///
-/// `usage`: what the tool does and how it is called; whole lines.
+/// `usage`: what the tool does and how it is called; whole lines. `source`: the
+/// file, without its extension, that defines the tool's own flags; empty: that
+/// of the program's name.
 int ToolMain(int argc, char** argv, const std::string& usage,
-             const std::function<int()>& body);
+             const std::function<int()>& body, const std::string& source = "");
 
 }  // namespace splitfusion
 

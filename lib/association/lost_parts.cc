@@ -40,6 +40,7 @@ OpenPoints FindOpenPoints(const LiveView& live, std::uint16_t surface,
       if (-normal.dot(point) < min_cosine * point.norm()) continue;
       open.points.push_back(point);
       open.normals.push_back(normal);
+      open.weights.push_back(live.camera.noise.Confidence(point.z()));
     }
   }
   return open;
@@ -71,7 +72,7 @@ std::vector<Correspondence> PairLostParts(
     pair.model = sample;
     pair.target = open.points[i];
     pair.target_normal = open.normals[i];
-    pair.weight = live.camera.noise.Confidence(pair.target.z());
+    pair.weight = open.weights[i];
     lost.push_back(pair);
   }
   return lost;

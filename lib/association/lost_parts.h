@@ -12,6 +12,7 @@ namespace splitfusion {
 struct OpenPoints {
   std::vector<Eigen::Vector3f> points;   ///< Camera frame, metres.
   std::vector<Eigen::Vector3f> normals;  ///< Camera frame.
+  std::vector<float> weights;            ///< Of their depth, 0..1.
 };
 
 /// Finds them.

@@ -1,12 +1,11 @@
 #include "splitfusion/lib/report/run_identity.h"
 
-#include <splitfusion_method_hash.h>
-
 #include <algorithm>
 #include <set>
 #include <vector>
 
 #include "splitfusion/lib/base/content_hash.h"
+#include "splitfusion/method_hash.h"
 
 namespace splitfusion {
 namespace {
@@ -78,6 +77,6 @@ std::string Differences(const RunIdentity& before, const RunIdentity& now) {
   return Joined(changes);
 }
 
-std::string MethodHash() { return internal::kMethodHash; }
+std::string MethodHash() { return SPLITFUSION_METHOD_HASH; }
 
 }  // namespace splitfusion
