@@ -4,8 +4,12 @@
 #include "splitfusion/cost_functions/color_constancy.h"
 #include "splitfusion/cost_functions/live_to_model.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
+#include "splitfusion/cost_functions/point_to_point.h"
+#include "splitfusion/cost_functions/projective_depth.h"
+#include "splitfusion/cost_functions/symmetric.h"
 #include "splitfusion/cost_functions/temporal_arap.h"
 #include "splitfusion/cost_functions/tracks.h"
+#include "splitfusion/cost_functions/velocity.h"
 
 namespace splitfusion {
 
@@ -21,6 +25,14 @@ TermRegistry BuiltinTerms() {
   registry.Register("temporal_arap",
                     [] { return std::make_unique<TemporalArapTerm>(); });
   registry.Register("tracks", [] { return std::make_unique<TracksTerm>(); });
+  registry.Register("point_to_point",
+                    [] { return std::make_unique<PointToPointTerm>(); });
+  registry.Register("symmetric",
+                    [] { return std::make_unique<SymmetricTerm>(); });
+  registry.Register("projective_depth",
+                    [] { return std::make_unique<ProjectiveDepthTerm>(); });
+  registry.Register("velocity",
+                    [] { return std::make_unique<VelocityTerm>(); });
   return registry;
 }
 

@@ -3,10 +3,9 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <memory>
-#include <vector>
 
 #include "splitfusion/lib/base/option_list.h"
+#include "splitfusion/lib/energy/correspondence_residuals.h"
 #include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
@@ -27,19 +26,19 @@ namespace splitfusion {
 struct ColorConstancy {
   /// Residuals of one point.
   static constexpr int kResiduals = 1;  // Layout.
-  PinholeCamera camera;                 ///< Live camera.
-  Eigen::Vector2d pixel;                ///< u_0, pixels.
-  Eigen::Vector2d gradient;             ///< grad I at u_0, 1 / pixel.
-  double difference = 0;                ///< d, 0..1.
+  Eigen::Vector2d focal;     ///< (fx, fy) of the live camera, pixels.
+  Eigen::Vector2d offset;    ///< (cx, cy) - u_0, pixels.
+  Eigen::Vector2d gradient;  ///< grad I at u_0, 1 / pixel.
+  double difference = 0;     ///< d, 0..1.
   /// sqrt(c) of the confidence.
   double sqrt_confidence = 1;
-  double metres = 0.05;  ///< m.
+  double metres = 1;  ///< m.
 
   /// `x`: warped point, camera frame, metres.
   template <typename T>
   bool operator()(const T* x, T* residual) const {
-    const T du = T(camera.fx) * x[0] / x[2] + T(camera.cx - pixel.x());
-    const T dv = T(camera.fy) * x[1] / x[2] + T(camera.cy - pixel.y());
+    const T du = T(focal.x()) * x[0] / x[2] + T(offset.x());
+    const T dv = T(focal.y()) * x[1] / x[2] + T(offset.y());
     residual[0] = T(metres * sqrt_confidence) *
                   (T(difference) + T(gradient.x()) * du + T(gradient.y()) * dv);
     return true;
@@ -56,24 +55,23 @@ class ColorConstancyTerm : public EnergyTerm {
 
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
-    std::vector<const ModelSample*> samples;
-    std::vector<ColorConstancy> functors;
-    samples.reserve(input.correspondences.size());
-    functors.reserve(input.correspondences.size());
-    double total = 0;
-    for (const Correspondence& c : input.correspondences) {
-      samples.push_back(&c.model);
-      functors.push_back({input.camera, c.pixel.cast<double>(),
-                          c.intensity_gradient.cast<double>(),
-                          c.intensity_difference, std::sqrt(c.weight),
-                          metres_});
-      total += c.weight;
-    }
-    sink->AddWarpedPoints(samples, functors, total);
+    const Eigen::Vector2d focal(input.camera.fx, input.camera.fy);
+    const Eigen::Vector2d principal(input.camera.cx, input.camera.cy);
+    AddCorrespondenceResiduals(
+        input.correspondences,
+        [&](const Correspondence& c) -> ColorConstancy {
+          return {focal,
+                  principal - c.pixel.cast<double>(),
+                  c.intensity_gradient.cast<double>(),
+                  c.intensity_difference,
+                  std::sqrt(c.weight),
+                  metres_};
+        },
+        sink);
   }
 
  private:
-  double metres_ = ColorConstancy().metres;
+  double metres_ = 0.05;
 };
 
 }  // namespace splitfusion

@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <memory>
 
+#include "splitfusion/lib/energy/correspondence_residuals.h"
 #include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
@@ -44,18 +44,13 @@ class PointToPlaneTerm : public EnergyTerm {
  public:
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
-    std::vector<const ModelSample*> samples;
-    std::vector<PointToPlane> functors;
-    samples.reserve(input.correspondences.size());
-    functors.reserve(input.correspondences.size());
-    double total = 0;
-    for (const Correspondence& c : input.correspondences) {
-      samples.push_back(&c.model);
-      functors.push_back({c.warped_normal.cast<double>(),
-                          c.target.cast<double>(), std::sqrt(c.weight)});
-      total += c.weight;
-    }
-    sink->AddWarpedPoints(samples, functors, total);
+    AddCorrespondenceResiduals(
+        input.correspondences,
+        [](const Correspondence& c) -> PointToPlane {
+          return {c.warped_normal.cast<double>(), c.target.cast<double>(),
+                  std::sqrt(c.weight)};
+        },
+        sink);
   }
 };
 

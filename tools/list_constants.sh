@@ -23,6 +23,10 @@ CONSTANT = re.compile(r"\bconstexpr\s+([\w:<>, ]+?)\s(\w+)(?:\[\w*\])*\s*=\s*"
 DEFAULT = re.compile(rf"\b{TYPE}\s+(\w+)\s*=\s*({NUMBER})\s*[;,)]")
 MEMBER = re.compile(rf"(?:\.|->)(\w+)\s*=\s*{NUMBER}\s*;")
 FLOAT = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?=e-?\d))(?:e[-+]?\d+)?f?")
+LISTING = re.compile(r"^\S[^\n]*::List\w*\(OptionList\* list\) \{.*?^\}|"
+                     r"^  void List\(OptionList\* list\) override \{.*?^  \}",
+                     re.M | re.S)
+STRUCT = re.compile(r"(?:struct|class) (\w+)(?! *;)")
 FUNCTION = re.compile(r"^(?:  )?(?!return|if|for|while|switch|else)[A-Za-z]"
                       r"[^;=#([]*?([\w~]+)\((?:[^;[]*|.*\})$")
 SIMPLE = {0, 0.5, 1, 2}
@@ -64,8 +68,7 @@ def option_fields(texts):
     """Fields that a List...(OptionList*) names, and the lines of these."""
     fields, lines = set(), set()
     for path, text in texts.items():
-        for body in re.finditer(r"::List\w*\(OptionList\* list\) \{.*?^\}", text,
-                                re.M | re.S):
+        for body in LISTING.finditer(text):
             fields.update(re.findall(r"&(?:\w+\.)*(\w+)", body[0]))
             first = text.count("\n", 0, body.start()) + 1
             lines.update((path, first + i)
@@ -73,7 +76,19 @@ def option_fields(texts):
     return fields, lines
 
 
-def constants(path, text, fields, listed):
+def structs_with_options(texts):
+    """Those that declare a List(OptionList*)."""
+    names = set()
+    for path, text in texts.items():
+        struct = ""
+        for line in text.split("\n"):
+            struct = (STRUCT.match(line) or [0, struct])[1]
+            if re.match(r"  (?:virtual )?void List\(OptionList\*", line):
+                names.add(struct)
+    return names
+
+
+def constants(path, text, fields, listed, owners):
     """(line, name, value) of all constants of a file that are not marked."""
     lines = text.split("\n")
     code = [without_comment(line) for line in lines]
@@ -81,8 +96,7 @@ def constants(path, text, fields, listed):
     struct = function = ""
     end = 0  # Of the statement before.
     for i, line in enumerate(code):
-        struct = (re.match(r"(?:struct|class) (\w+)(?! *;)", line) or
-                  [0, struct])[1]
+        struct = (STRUCT.match(line) or [0, struct])[1]
         function = (FUNCTION.match(line) or [0, function])[1]
         statement = line if ";" in line else " ".join(code[i:i + 8])
         constant = "constexpr" in line and CONSTANT.search(statement)
@@ -99,10 +113,9 @@ def constants(path, text, fields, listed):
             continue
         default = DEFAULT.search(line)
         if default:
-            is_option = struct.endswith("Options") and path.endswith(".h")
-            reached = is_option and default[1] in fields
+            reached = struct in owners and default[1] in fields
             if not (reached or is_sentinel(default[2]) or
-                    not is_option and is_simple(default[2]) or
+                    not struct.endswith("Options") and is_simple(default[2]) or
                     line.lstrip().startswith("for")):
                 yield i + 1, default[1], default[2]
             continue
@@ -117,7 +130,8 @@ def constants(path, text, fields, listed):
 
 texts = {path: open(path).read() for path in sorted(files())}
 fields, listed = option_fields(texts)
+owners = structs_with_options(texts)
 for path, text in texts.items():
-    for line, name, value in constants(path, text, fields, listed):
+    for line, name, value in constants(path, text, fields, listed, owners):
         print(f"{path}:{line} {name} = {value}")
 PYTHON

@@ -18,11 +18,12 @@ constexpr double kUnit = 0.05;  // Metres a grey value of 1 counts for.
 
 ColorConstancy Sample() {
   ColorConstancy color{};
-  color.camera = {160, 120, 130, 131, 80, 60};
-  color.pixel = {100, 40};
+  color.focal = {130, 131};
+  color.offset = {80 - 100, 60 - 40};
   color.gradient = {0.02, -0.01};
   color.difference = 0.1;
   color.sqrt_confidence = 0.5;
+  color.metres = kUnit;
   return color;
 }
 

@@ -86,10 +86,10 @@ std::vector<splitfusion::Correspondence> MovedBox(
 /// and radians.
 double MotionError() {
   splitfusion::TermRegistry terms = splitfusion::BuiltinTerms();
-  terms.Register("point_to_point",
+  terms.Register("to_live_point",
                  [] { return std::make_unique<PointToPointTerm>(); });
   const splitfusion::Energy energy =
-      splitfusion::ParseEnergy("point_to_point(weight=2)", terms);
+      splitfusion::ParseEnergy("to_live_point(weight=2)", terms);
   splitfusion::Rigid3d motion = splitfusion::Rigid3d::Identity();
   motion.linear() = splitfusion::ExpSo3({0.1, -0.2, 0.05});
   motion.translation() << 0.1, -0.2, 0.3;
@@ -98,8 +98,7 @@ double MotionError() {
   splitfusion::SolverOptions options;
   options.solver = "ceres";
   options.max_iterations = 20;
-  splitfusion::Minimize({energy, MovedBox(motion), Camera()}, options,
-                                 &graph);
+  splitfusion::Minimize({energy, MovedBox(motion), Camera()}, options, &graph);
   const splitfusion::Rigid3d found = splitfusion::MeanRigidMotion(graph);
   return (found.matrix() - motion.matrix()).norm();
 }

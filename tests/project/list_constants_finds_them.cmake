@@ -28,12 +28,25 @@ double Gate(double z) {
   return 0.02 + 2 * z;
 }
 ]])
+file(WRITE "${WORK_DIR}/cost_functions/c.h" [[
+class Term : public EnergyTerm {
+ public:
+  void List(OptionList* list) override {
+    list->Number("metres", &metres_, {0.2, 0.7}, "", "");
+  }
+
+ private:
+  double metres_ = 0.05;
+  double unlisted_ = 0.06;
+};
+]])
 file(WRITE "${WORK_DIR}/lib/report/b.cc" "constexpr int kWidth = 640;\n")
 execute_process(
   COMMAND "${CMAKE_CURRENT_LIST_DIR}/../../tools/list_constants.sh"
           "${WORK_DIR}"
   RESULT_VARIABLE result OUTPUT_VARIABLE output)
-set(expected "lib/split/a.cc:1 kReach = 0.45f
+set(expected "cost_functions/c.h:9 unlisted_ = 0.06
+lib/split/a.cc:1 kReach = 0.45f
 lib/split/a.cc:4 kLevels = {1.2, 4.0}
 lib/split/a.cc:12 Gate = 0.02
 lib/split/a.h:3 hidden = 1
