@@ -22,6 +22,7 @@
 #include "progress_line.h"
 #include "run_flags.h"
 #include "sequence_flags.h"
+#include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/thread_limit.h"
 #include "splitfusion/lib/energy/terms_library.h"

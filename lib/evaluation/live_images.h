@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "splitfusion/lib/evaluation/recorded_run.h"
+#include "splitfusion/lib/sequence/calibration.h"
 #include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/graph_file.h"
 #include "splitfusion/lib/sequence/calibration.h"
 

@@ -14,13 +14,13 @@ constexpr float kNearPlane = 0.05f;
 /// Pinhole camera without distortion. Camera frame: x right, y down, z forward;
 /// pixel (0, 0) is the centre of the top-left pixel.
 struct PinholeCamera {
-  int width = 0;     ///< Pixels.
-  int height = 0;    ///< Pixels.
-  double fx = 0;     ///< Focal length, pixels.
-  double fy = 0;     ///< Focal length, pixels.
-  double cx = 0;     ///< Principal point, pixels.
-  double cy = 0;     ///< Principal point, pixels.
-  DepthNoise noise;  ///< Of its depth images.
+  int width = 0;       ///< Pixels.
+  int height = 0;      ///< Pixels.
+  double fx = 0;       ///< Focal length, pixels.
+  double fy = 0;       ///< Focal length, pixels.
+  double cx = 0;       ///< Principal point, pixels.
+  double cy = 0;       ///< Principal point, pixels.
+  DepthNoise noise{};  ///< Of its depth images.
 
   /// Pixel of a point of the camera frame (metres); the point must have z > 0.
   template <typename T>

@@ -1,5 +1,7 @@
 #include "splitfusion/lib/geometry/depth_noise.h"
 
+#include "splitfusion/lib/base/option_list.h"
+
 namespace splitfusion {
 
 void DepthNoise::List(OptionList* list) {

@@ -1,9 +1,9 @@
 #ifndef SPLITFUSION_LIB_GEOMETRY_DEPTH_NOISE_H_
 #define SPLITFUSION_LIB_GEOMETRY_DEPTH_NOISE_H_
 
-#include "splitfusion/lib/base/option_list.h"
-
 namespace splitfusion {
+
+class OptionList;
 
 /// Axial noise of a depth camera; by default that of a structured-light camera
 /// (Nguyen et al. 2012). It sets gates, edge thresholds and weights.

@@ -14,7 +14,7 @@ namespace splitfusion {
 struct PointMap {
   cv::Mat_<cv::Vec3f> points;   ///< HxW; (0,0,0) where there is no depth.
   cv::Mat_<cv::Vec3f> normals;  ///< HxW; towards the camera; 0 = unknown.
-  DepthNoise noise;             ///< Of the depth.
+  DepthNoise noise{};           ///< Of the depth.
 };
 
 /// A point or a normal of such a map.

@@ -5,6 +5,7 @@
 #include <array>
 #include <opencv2/imgproc.hpp>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/sequence/calibration.h"
 #include "splitfusion/lib/sequence/frame.h"
 #include "splitfusion/lib/sequence/reader_options.h"
 #include "splitfusion/lib/sequence/sequence_format.h"

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/sequence/calibration.h"
 #include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {

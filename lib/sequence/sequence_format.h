@@ -9,9 +9,10 @@
 
 #include "splitfusion/lib/base/registry.h"
 #include "splitfusion/lib/sequence/association_list.h"
-#include "splitfusion/lib/sequence/calibration.h"
 
 namespace splitfusion {
+
+struct Calibration;
 
 /// The layout of a kind of data sets: where the images of a sequence are and
 /// what their pixels mean. ImageFolderReader reads by it. Thread-safe.

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/sequence/calibration.h"
 #include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {

@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "splitfusion/lib/sequence/calibration.h"
 #include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {

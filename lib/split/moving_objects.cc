@@ -1,5 +1,7 @@
 #include "splitfusion/lib/split/moving_objects.h"
 
+#include "splitfusion/lib/split/assignment.h"
+
 namespace splitfusion {
 MovingObjects::MovingObjects(const PinholeCamera& camera,
                              const SplitOptions& options)
@@ -15,6 +17,10 @@ bool MovingObjects::IsWatched(const Candidate& candidate) const {
 cv::Mat_<uchar> MovingObjects::Watch(const MotionView& view,
                                      std::vector<Candidate>* candidates) {
   cv::Mat_<uchar> standing_free(view.depth.size(), uchar(0));
+  if (options_.unknown_movers) {
+    standing_free = space_.WasEmpty(view.in_front & ~view.claimed, view.points,
+                                    view.world_from_camera);
+  }
   for (Candidate& candidate : *candidates) {
     if (!IsWatched(candidate)) continue;
     const cv::Mat_<uchar> seen = candidate.mask & (view.depth > 0);

@@ -6,11 +6,12 @@
 
 #include "splitfusion/lib/geometry/point_map.h"
 #include "splitfusion/lib/geometry/rigid3.h"
-#include "splitfusion/lib/split/assignment.h"
 #include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/lib/visibility/seen_space.h"
 
 namespace splitfusion {
+
+struct Candidate;
 
 /// What is known of a frame when its moving objects are looked for.
 struct MotionView {
@@ -20,6 +21,8 @@ struct MotionView {
   const Rigid3d& world_from_camera;  ///< Predicted pose.
   /// HxW, 255: on what is known to move anyway; tells nothing of others.
   cv::Mat_<uchar> claimed;
+  /// HxW, 255: nearer than the mapped background.
+  cv::Mat_<uchar> in_front;
 };
 
 /// Watches detections of rigid classes, which are background until they are
@@ -30,8 +33,9 @@ class MovingObjects {
   MovingObjects(const PinholeCamera& camera, const SplitOptions& options);
 
   /// Marks those candidates of rigid classes as `moved` that stand where space
-  /// was empty, and returns such pixels of all of them: HxW, 255; they are no
-  /// background.
+  /// was empty, and returns such pixels, of them and of whatever else is in
+  /// front of the background: HxW, 255. They are no background: what stands
+  /// there came after, detected or not.
   cv::Mat_<uchar> Watch(const MotionView& view,
                         std::vector<Candidate>* candidates);
 

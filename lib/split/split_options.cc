@@ -12,6 +12,9 @@ void SplitOptions::List(OptionList* list) {
                "Rigid classes: background (until they move) or separate "
                "(surfaces of their own).")
       .common = true;
+  list->Switch("unknown_movers", &unknown_movers,
+               "What stands where space was seen empty is no background, "
+               "detected or not.");
   list->Text("merge_touching", &merge_touching,
              "CLASS+CLASS,...: instances of later classes that touch one of "
              "the first belong to it, as in person+teddy bear.")

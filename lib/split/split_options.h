@@ -39,6 +39,8 @@ struct SplitOptions {
   /// Detections of rigid classes are "background" until they are seen to have
   /// moved, or get surfaces of their own, "separate".
   std::string rigid_objects = "background";
+  bool unknown_movers = true;  ///< What stands where space was seen empty is
+                               ///< no background, detected or not.
   std::string merge_touching;  ///< One surface while they touch, see
                                ///< ParseMergeGroups().
 

@@ -34,7 +34,7 @@ struct ComparedDepth {
   LabelImage labels;  ///< Predicted surface ids, 0 = background or nothing.
   cv::Mat_<uchar> agreement;   ///< With the nearest surface, a DepthState.
   cv::Mat_<uchar> background;  ///< With the background behind all surfaces.
-  DepthNoise noise;            ///< Of the live depth.
+  DepthNoise noise{};          ///< Of the live depth.
 };
 
 /// Compares live and predicted depth. `depth`: HxW 32FC1, metres; `noise`: of

@@ -190,9 +190,11 @@ cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
     if (tracks_.at(id).kind == SurfaceKind::kRigid) continue;
     claimed |= input.compared.labels == id;
   }
-  return objects_.Watch({input.frame.index, input.frame.depth, input.points,
-                         input.prior.world_from_camera, claimed},
-                        candidates);
+  return objects_.Watch(
+      {input.frame.index, input.frame.depth, input.points,
+       input.prior.world_from_camera, claimed,
+       input.compared.background == static_cast<int>(DepthState::kOccluded)},
+      candidates);
 }
 
 void SurfaceSplitter::RecognizeReturned(int frame, LabelImage* predicted,

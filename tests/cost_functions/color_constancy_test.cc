@@ -98,8 +98,10 @@ TEST(ColorConstancyTerm, TakesTheCorrespondencesAndTheCamera) {
 
 TEST(ColorConstancyTerm, CountsGreyValuesAsAskedFor) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  Correspondence c;
+  Correspondence c{};
   c.model.point = {0, 0, 1.5f};
+  c.model.normal = c.warped_normal = c.target_normal = {0, 0, -1};
+  c.target = c.model.point;
   c.model.skinning.count = 1;
   c.model.skinning.weights[0] = 1;
   c.intensity_difference = 0.2f;

@@ -76,10 +76,11 @@ TEST(SymmetricTerm, IsZeroOnACircle) {
                            static_cast<float>(-std::cos(angle)));
   };
   const Eigen::Vector3f center(0, 0, 2);
-  Correspondence c;
+  Correspondence c{};
   c.model.skinning.count = 1;
   c.model.skinning.weights[0] = 1;
   c.warped_normal = on_circle(0.2);
+  c.model.normal = c.warped_normal;
   c.model.point = center + 0.5f * c.warped_normal;
   c.target_normal = on_circle(-0.3);
   c.target = center + 0.5f * c.target_normal;

@@ -7,8 +7,9 @@ namespace {
 
 TEST(DepthTolerance, GrowsWithTheNoiseOfTheSensor) {
   const DepthTolerance<double> tolerance = {0.02, 3};
-  EXPECT_DOUBLE_EQ(tolerance.At(0.4), 0.02 + 3 * 0.0012);
-  EXPECT_DOUBLE_EQ(tolerance.At(2.4), 0.02 + 3 * (0.0012 + 0.0019 * 4));
+  EXPECT_DOUBLE_EQ(tolerance.At(0.4, DepthNoise()), 0.02 + 3 * 0.0012);
+  EXPECT_DOUBLE_EQ(tolerance.At(2.4, DepthNoise()),
+                   0.02 + 3 * (0.0012 + 0.0019 * 4));
 }
 
 TEST(ClassifyDepth, ComparesWhatIsSeenWithThePoint) {

@@ -117,6 +117,34 @@ TEST_F(MovingObjectsTest, WhatComesIntoViewBeforeAMappedWallHasNotMoved) {
   EXPECT_TRUE(splitter_.tracks().empty());
 }
 
+TEST_F(MovingObjectsTest, WhatNobodyDetectsIsNoBackgroundIfItCameLater) {
+  const auto share_left_alone = [&](int frame, int x) {
+    LayeredScene scene(3.0, frame);
+    scene.Add(ChairAt(x), 2.0, 1);
+    Split(scene, {}, WallAlone());
+    EXPECT_EQ(cv::countNonZero(last_.labels), 0) << frame;
+    return cv::countNonZero(last_.uncertain & scene.Truth(1)) /
+           double(cv::countNonZero(scene.Truth(1)));
+  };
+  for (int i = 0; i < 12; ++i) share_left_alone(i, /*x=*/200);
+  for (int i = 12; i < 30; ++i) {
+    EXPECT_GT(share_left_alone(i, 4 * i), 0.8) << i;
+  }
+}
+
+TEST_F(MovingObjectsTest, WhatNobodyDetectsIsBackgroundIfItComesIntoView) {
+  for (int i = 0; i < 40; ++i) {
+    SurfacePrediction prediction = WallAlone();
+    const double way = 0.03 * i;  // Of the camera, to the right, metres.
+    prediction.world_from_camera.translation().x() = way;
+    LayeredScene scene(3.0, i);
+    const int x = static_cast<int>(165 - SceneCamera().fx * way / 2.0);
+    scene.Add(ChairAt(x), 2.0, 1);
+    Split(scene, {}, prediction);
+    EXPECT_EQ(cv::countNonZero(last_.uncertain & scene.Truth(1)), 0) << i;
+  }
+}
+
 TEST_F(MovingObjectsTest, AWrongPoseMovesNothing) {
   for (int i = 0; i < 40; ++i) {
     LayeredScene scene(i < 15 ? 3.0 : 2.4, i);

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "splitfusion/lib/geometry/depth_noise.h"
+
 namespace splitfusion {
 namespace internal {
 
