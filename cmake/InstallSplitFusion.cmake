@@ -17,6 +17,10 @@ install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 install(EXPORT splitfusionTargets NAMESPACE splitfusion::
         DESTINATION "${package_dir}")
+if(SPLITFUSION_BUILD_TOOLS)
+  install(EXPORT splitfusionRunTargets NAMESPACE splitfusion::
+          DESTINATION "${package_dir}")
+endif()
 configure_package_config_file(
   cmake/splitfusionConfig.cmake.in
   "${PROJECT_BINARY_DIR}/splitfusionConfig.cmake"

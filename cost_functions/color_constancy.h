@@ -32,7 +32,7 @@ struct ColorConstancy {
   double difference = 0;     ///< d, 0..1.
   /// sqrt(c) of the confidence.
   double sqrt_confidence = 1;
-  double metres = 1;  ///< m.
+  double metres = 0;  ///< m.
 
   /// `x`: warped point, camera frame, metres.
   template <typename T>

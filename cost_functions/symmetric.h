@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "splitfusion/cost_functions/point_to_plane.h"
+#include "splitfusion/lib/energy/correspondence_residuals.h"
+#include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
 

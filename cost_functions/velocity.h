@@ -27,12 +27,13 @@ struct Velocity {
 };
 
 /// Velocities of all nodes: what nothing else holds stays where it was. Absent
-/// where the frame before is not known.
+/// on a one-node graph, whose centre is not that of the surface, and where the
+/// frame before is not known.
 class VelocityTerm : public EnergyTerm {
  public:
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
-    if (input.before == nullptr) return;
+    if (input.before == nullptr || input.graph.rigid()) return;
     std::vector<std::vector<int>> nodes;
     std::vector<Velocity> functors;
     for (int i = 0; i < input.graph.size(); ++i) {

@@ -53,6 +53,7 @@ const std::set<std::string>& Uncounted() {
                                               "sequence",
                                               "set",
                                               "terms",
+                                              "terms_library",
                                               "threads",
                                               "intrinsics",
                                               "depth_scale",
@@ -154,9 +155,13 @@ std::string LibrariesHash() {
 }
 
 void SetFlag(const std::string& key, const std::string& value) {
+  // Some are read before it.
+  static const std::set<std::string> not_set = {
+      "set",           "output",         "terms_library",
+      "print_options", "print_identity", "help_terms"};
   gflags::CommandLineFlagInfo flag;
   const bool known = gflags::GetCommandLineFlagInfo(key.c_str(), &flag) &&
-                     IsRunFlag(flag) && key != "set" && key != "output";
+                     IsRunFlag(flag) && not_set.count(key) == 0;
   if (!known) {
     throw InputError("--set: key '" + key +
                      "': expected a flag of sf_run, or terms.NAME.KEY "

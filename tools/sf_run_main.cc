@@ -10,10 +10,10 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "identity_flags.h"
 #include "interruption.h"
@@ -209,35 +209,36 @@ int Reconstruct(
   return kExitDone;
 }
 
-std::vector<std::string> TermsLibraries() {
-  std::vector<std::string> paths;
-  std::istringstream list(FLAGS_terms_library);
-  for (std::string path; std::getline(list, path, ',');) paths.push_back(path);
-  return paths;
+/// Whether a program has added to what comes with the toolkit.
+bool HasOwnCode(const Registries& registries) {
+  const Registries builtin;
+  return registries.terms.names() != builtin.terms.names() ||
+         registries.associations.names() != builtin.associations.names() ||
+         registries.solvers.names() != builtin.solvers.names() ||
+         registries.formats.names() != builtin.formats.names();
 }
 
-/// Hashes of code that is not the toolkit's and may change the result.
-NamedValues PartsOfOwnCode(const Registries& registries) {
-  const Registries builtin;
-  const bool own =
-      registries.terms.names() != builtin.terms.names() ||
-      registries.associations.names() != builtin.associations.names() ||
-      registries.solvers.names() != builtin.solvers.names() ||
-      registries.formats.names() != builtin.formats.names();
-  NamedValues parts;
-  if (own) parts["program"] = HashOfFile("/proc/self/exe");
-  for (const std::string& path : TermsLibraries()) {
-    parts["terms_library." + std::filesystem::path(path).filename().string()] =
-        HashOfFile(path);
+/// Loads the libraries of --terms_library. Returns the hash of their contents,
+/// whatever their order; "none" without any.
+std::string LoadTermsLibraries(TermRegistry* terms) {
+  std::set<std::string> hashes;
+  std::istringstream list(FLAGS_terms_library);
+  for (std::string path; std::getline(list, path, ',');) {
+    CheckOption(!path.empty(), "terms_library", FLAGS_terms_library,
+                "files, separated by commas");
+    LoadTermsLibrary(path, terms);
+    hashes.insert(HashOfFile(path));
   }
-  return parts;
+  ContentHash all;
+  for (const std::string& hash : hashes) all.Add(hash);
+  return hashes.empty() ? "none" : all.Hex();
 }
 
 int RunSequence(Registries registries) {
-  const NamedValues own_code = PartsOfOwnCode(registries);
-  for (const std::string& path : TermsLibraries()) {
-    LoadTermsLibrary(path, &registries.terms);
-  }
+  // Code that is not the toolkit's may change the result.
+  const std::string program =
+      HasOwnCode(registries) ? HashOfFile("/proc/self/exe") : "sf_run";
+  const std::string libraries = LoadTermsLibraries(&registries.terms);
   if (FLAGS_help_terms) {
     std::cout << TermsHelp(registries.terms);
     return kExitDone;
@@ -256,7 +257,8 @@ int RunSequence(Registries registries) {
       ResolveFormat(reading.format, FLAGS_sequence, registries.formats);
   const auto identify = [&](const ImageFolderReader& reader) {
     RunIdentity identity = IdentityFromFlags(reader, registries.terms);
-    identity.parts.insert(own_code.begin(), own_code.end());
+    identity.parts["program"] = program;
+    identity.parts["terms_libraries"] = libraries;
     return identity;
   };
   if (FLAGS_print_identity) {

@@ -2,6 +2,7 @@
 #define TERM_PROJECT_STRETCH_TERM_H_
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "splitfusion/lib/base/option_list.h"

@@ -56,8 +56,9 @@ class EnergyTerm {
   virtual ~EnergyTerm() = default;
 
   /// Adds the term's own parameters: names, ranges, units and meaning of its
-  /// fields, whose values so far are the defaults. They become keys of the term
-  /// in --terms and --set, beside weight, loss and scale.
+  /// fields, whose values in a new term are the defaults. They become keys of
+  /// the term in --terms and --set, beside weight, loss and scale. Called often:
+  /// it lists, and changes nothing.
   virtual void List(OptionList* /*list*/) {}
 
   /// Adds the residuals of all its points, nodes or edges.

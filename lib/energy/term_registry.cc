@@ -13,6 +13,16 @@
 namespace splitfusion {
 namespace {
 
+/// Names stand in texts like "name(key=value)".
+void CheckName(const std::string& what, const std::string& name) {
+  const bool good =
+      !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+      });
+  CheckOption(good, what + " of a term", name.empty() ? "''" : name,
+              "letters, digits and _");
+}
+
 /// The keys of a term: weight, loss and scale, then those of its own.
 class TermKeys {
  public:
@@ -21,11 +31,17 @@ class TermKeys {
     list_.Part(term->options.name + ".", this);
     std::set<std::string> names;
     for (const Option& option : all()) {
+      CheckName("key", KeyOf(option));
       if (names.insert(option.name).second) continue;
       throw InputError("term '" + term->options.name + "' has the key '" +
                        KeyOf(option) + "' twice");
     }
   }
+  TermKeys(const TermKeys&) = delete;
+  TermKeys& operator=(const TermKeys&) = delete;
+
+  /// @throw OptionError if a value, or a default, is not what is expected.
+  void Check() const { list_.Check(); }
 
   /// Names begin with that of the term and a dot.
   const std::vector<Option>& all() const { return list_.options(); }
@@ -36,6 +52,8 @@ class TermKeys {
     for (Option option : all()) {
       known.push_back(KeyOf(option));
       if (known.back() != key) continue;
+      CheckOption(value.find_first_of("(),") == std::string::npos, option.name,
+                  value, "a value without brackets and commas");
       option.Set(value);
       term_->options.loss = ParseLoss(loss_);
       return;
@@ -70,6 +88,11 @@ WeightedTerm MakeTerm(const std::string& name, const TermRegistry& registry) {
   WeightedTerm term;
   term.options.name = name;
   term.term = registry.Make(name);
+  CheckName("name", name);
+  if (term.term == nullptr) {
+    throw InputError("term '" + name + "': its factory made nothing");
+  }
+  TermKeys(&term).Check();
   return term;
 }
 
@@ -129,6 +152,7 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
 }
 
 void CheckEnergy(const Energy& energy) {
+  for (WeightedTerm term : energy) TermKeys(&term).Check();
   const bool any = std::any_of(
       energy.begin(), energy.end(),
       [](const WeightedTerm& term) { return term.options.weight > 0; });
@@ -186,13 +210,17 @@ std::map<std::string, std::string> TermOptionValues(const Energy& energy) {
 }
 
 std::string TermsHelp(const TermRegistry& registry) {
-  std::string text;
+  std::string text =
+      "  Every term takes weight (1 if it is not given), loss (trivial, huber, "
+      "tukey,\n  cauchy; trivial) and scale of the loss (0.01 metres), and "
+      "what is listed below it.\n";
   for (const std::string& name : registry.names()) {
     WeightedTerm term = MakeTerm(name, registry);
-    const TermKeys keys(&term);
     text += name + "\n";
-    for (const Option& option : keys.all()) {
-      text += "  " + keys.KeyOf(option) + " = " + option.ValueText() + " (" +
+    OptionList own;
+    term.term->List(&own);
+    for (const Option& option : own.options()) {
+      text += "  " + option.name + " = " + option.ValueText() + " (" +
               option.Expected() + ")\n      " + option.help + "\n";
     }
   }

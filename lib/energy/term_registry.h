@@ -24,7 +24,7 @@ struct WeightedTerm {
   std::shared_ptr<EnergyTerm> term;
 };
 
-/// The energy of Eq. 4: a sum of weighted terms.
+/// The energy of Eq. 4: a sum of weighted terms. Copies share their terms.
 using Energy = std::vector<WeightedTerm>;
 
 /// Parses the energy from text like

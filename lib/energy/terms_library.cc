@@ -13,24 +13,29 @@ void LoadTermsLibrary(const std::string& path, TermRegistry* terms) {
   const auto refuse = [&](const std::string& why) {
     throw InputError("--terms_library: " + path + ": " + why);
   };
-  if (!fs::is_regular_file(path)) refuse("expected a shared library");
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) refuse("expected a shared library");
   // It is never closed: terms that it makes live on.
   void* library = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     refuse(std::string("cannot be loaded: ") + dlerror());
   }
-  using Present = TermsLibrary (*)();
-  const auto present =
-      reinterpret_cast<Present>(dlsym(library, "SplitFusionTerms"));
-  if (present == nullptr) {
+  const auto* build =
+      static_cast<const char*>(dlsym(library, "SplitFusionTermsBuild"));
+  using Add = void (*)(TermRegistry*);
+  const auto add = reinterpret_cast<Add>(dlsym(library, "SplitFusionAddTerms"));
+  if (build == nullptr || add == nullptr) {
     refuse("expected a library with SPLITFUSION_TERMS_LIBRARY(...)");
   }
-  const TermsLibrary found = present();
-  if (found.build != std::string(SPLITFUSION_BUILD)) {
-    refuse("built with " + std::string(found.build) +
+  if (build != std::string(SPLITFUSION_BUILD)) {
+    refuse("built with " + std::string(build) +
            ": expected " SPLITFUSION_BUILD);
   }
-  found.add(terms);
+  try {
+    add(terms);
+  } catch (const InputError& clash) {
+    refuse(clash.what());
+  }
 }
 
 }  // namespace splitfusion

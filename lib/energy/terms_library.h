@@ -1,40 +1,48 @@
 #ifndef SPLITFUSION_LIB_ENERGY_TERMS_LIBRARY_H_
 #define SPLITFUSION_LIB_ENERGY_TERMS_LIBRARY_H_
 
+#include <Eigen/Core>
 #include <string>
 
 #include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/method_hash.h"
 
-namespace splitfusion {
+/// Text of a macro's value.
+#define SPLITFUSION_TEXT(value) SPLITFUSION_TEXT_OF(value)
+/// Text of a macro's argument.
+#define SPLITFUSION_TEXT_OF(value) #value
 
 /// What a program and a library of terms must have been built with alike, or
-/// they would read each other's memory wrongly.
-#define SPLITFUSION_BUILD                                         \
-  "splitfusion " SPLITFUSION_VERSION " (" SPLITFUSION_METHOD_HASH \
-  "), compiler " __VERSION__
-
-/// How a shared library presents its terms; in it a program reads `build`
-/// alone, until it knows that they fit.
-struct TermsLibrary {
-  const char* build;                 ///< SPLITFUSION_BUILD, there.
-  void (*add)(TermRegistry* terms);  ///< Registers its terms.
-};
+/// they would read each other's memory wrongly: version and sources of the
+/// toolkit, compiler, and what decides the layout of the standard library's and
+/// Eigen's types.
+#define SPLITFUSION_BUILD \
+  "splitfusion " SPLITFUSION_VERSION " (" SPLITFUSION_METHOD_HASH        \
+  "), compiler " __VERSION__ " (ABI " SPLITFUSION_TEXT(                  \
+      _GLIBCXX_USE_CXX11_ABI) "), Eigen " SPLITFUSION_TEXT(              \
+      EIGEN_WORLD_VERSION) "." SPLITFUSION_TEXT(EIGEN_MAJOR_VERSION) "." \
+  SPLITFUSION_TEXT(EIGEN_MINOR_VERSION) " (alignment " SPLITFUSION_TEXT( \
+      EIGEN_MAX_ALIGN_BYTES) ")"
 
 /// Makes a shared library of energy terms, for sf_run --terms_library. `add`: a
 /// function void(splitfusion::TermRegistry*) that registers them. Stands once
 /// in the library, outside of any namespace.
-#define SPLITFUSION_TERMS_LIBRARY(add)                        \
-  extern "C" ::splitfusion::TermsLibrary SplitFusionTerms() { \
-    return {SPLITFUSION_BUILD, add};                          \
+#define SPLITFUSION_TERMS_LIBRARY(add)                                        \
+  extern "C" __attribute__((visibility("default")))                           \
+  const char SplitFusionTermsBuild[] = SPLITFUSION_BUILD;                     \
+  extern "C" __attribute__((visibility("default"))) void SplitFusionAddTerms( \
+      ::splitfusion::TermRegistry* terms) {                                   \
+    add(terms);                                                               \
   }
 
+namespace splitfusion {
+
 /// Loads a shared library of terms, for the rest of the program, and registers
-/// them.
+/// them. Nothing in it is called unless its SPLITFUSION_BUILD is that of the
+/// program.
 ///
 /// @throw InputError if the file cannot be loaded, is no such library, was
-///     built with another version or compiler, or has a term of a name that is
-///     taken.
+///     built with something else, or has a term of a name that is taken.
 void LoadTermsLibrary(const std::string& path, TermRegistry* terms);
 
 }  // namespace splitfusion

@@ -9,6 +9,7 @@ namespace splitfusion {
 SPLITFUSION_VECTOR_CLONES
 void MarkEdges(const float* depth, int stride, int width, float focal_length,
                const DepthNoise& noise, std::uint8_t* edges) {
+  const DepthNoise local = noise;  // Which no edge's address can be that of.
   for (int u = 0; u < width; ++u) {
     const float z = depth[u];
     int is_edge = 0;
@@ -17,7 +18,7 @@ void MarkEdges(const float* depth, int stride, int width, float focal_length,
       for (const int offset : offsets) {
         const float other = depth[u + offset];
         const float jump =
-            EdgeJump(other < z ? other : z, step, focal_length, noise);
+            EdgeJump(other < z ? other : z, step, focal_length, local);
         is_edge |= (other > 0) & IsDepthJump(z, other, jump);
       }
     }

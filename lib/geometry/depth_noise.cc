@@ -14,6 +14,7 @@ void DepthNoise::List(OptionList* list) {
                "Depth at which it is least.");
   list->Number("reference", &reference, Range::Above(0), "metres",
                "Depth up to which a measurement has its full weight.");
+  list->Demand(reference >= best, "reference", "metres >= noise_best");
 }
 
 }  // namespace splitfusion

@@ -8,7 +8,8 @@ MovingObjects::MovingObjects(const PinholeCamera& camera,
     : options_(options), space_(camera) {}
 
 bool MovingObjects::IsWatched(const Candidate& candidate) const {
-  return candidate.kind == SurfaceKind::kRigid &&
+  return options_.rigid_objects != "separate" &&
+         candidate.kind == SurfaceKind::kRigid &&
          candidate.score >= options_.min_score &&
          cv::countNonZero(candidate.mask) <=
              options_.max_area * candidate.mask.total();

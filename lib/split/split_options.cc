@@ -12,9 +12,10 @@ void SplitOptions::List(OptionList* list) {
                "Rigid classes: background (until they move) or separate "
                "(surfaces of their own).")
       .common = true;
-  list->Switch("unknown_movers", &unknown_movers,
-               "What stands where space was seen empty is no background, "
-               "detected or not.");
+  list->Switch(
+      "unknown_movers", &unknown_movers,
+      "What stands where space was seen empty is no background, detected "
+      "or not, for as long as it stands there.");
   list->Text("merge_touching", &merge_touching,
              "CLASS+CLASS,...: instances of later classes that touch one of "
              "the first belong to it, as in person+teddy bear.")

@@ -176,10 +176,7 @@ std::vector<Candidate> SurfaceSplitter::MakeCandidates(
 cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
     const Input& input, std::vector<Candidate>* candidates) {
   cv::Mat_<uchar> claimed(input.frame.depth.size(), uchar(0));
-  if (options_.rigid_objects == "separate" ||
-      !BackgroundFits(*candidates, input.compared)) {
-    return claimed;
-  }
+  if (!BackgroundFits(*candidates, input.compared)) return claimed;
   for (const Candidate& candidate : *candidates) {
     if (candidate.score >= options_.min_score &&
         candidate.kind == SurfaceKind::kNonRigid) {

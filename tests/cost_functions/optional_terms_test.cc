@@ -128,6 +128,10 @@ TEST(VelocityTerm, IsTheWaySinceTheFrameBefore) {
   const AddedResiduals added = ResidualsOf(VelocityTerm(), input, kOptions);
   EXPECT_EQ(added.residual_vectors, graph.size());
   EXPECT_NEAR(EnergyOf(graph, added.residuals), 25, 1e-9);
+  const DeformationGraph rigid = MakeRigidGraph(Rigid3d::Identity());
+  EnergyInput body{rigid, {}, PinholeCamera()};
+  body.before = &rigid.motions;
+  EXPECT_EQ(ResidualsOf(VelocityTerm(), body, kOptions).residual_vectors, 0);
 }
 
 }  // namespace

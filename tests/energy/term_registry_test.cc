@@ -168,6 +168,53 @@ TEST(TermParameters, MustNotShareANameWithAnother) {
                    "term 'two' has the key 'weight' twice");
 }
 
+TEST(TermParameters, AreCheckedTogetherAndWithTheirDefaults) {
+  class BadDefault : public StretchTerm {
+    void List(OptionList* list) override {
+      list->Number("length", &length, Range::Above(1), "metres", "At rest.");
+    }
+  };
+  class Ordered : public StretchTerm {
+    void List(OptionList* list) override {
+      list->Number("rings", &rings, {1, 5}, "", "");
+      list->Number("length", &length, Range::Above(0), "", "");
+      list->Demand(length < rings, "length", "less than rings");
+    }
+  };
+  TermRegistry terms("term");
+  terms.Register("bad", [] { return std::make_unique<BadDefault>(); });
+  terms.Register("ordered", [] { return std::make_unique<Ordered>(); });
+  terms.Register("none", [] { return std::unique_ptr<EnergyTerm>(); });
+  terms.Register("my-term", [] { return std::make_unique<StretchTerm>(); });
+  ExpectInputError([&] { ParseEnergy("bad", terms); },
+                   "bad.length = 0.5: expected metres > 1");
+  ExpectInputError(
+      [&] { CheckEnergy(ParseEnergy("ordered(length=3)", terms)); },
+      "ordered.length = 3: expected less than rings");
+  ExpectInputError([&] { ParseEnergy("none", terms); },
+                   "term 'none': its factory made nothing");
+  Energy energy = ParseEnergy("ordered", terms);
+  ExpectInputError(
+      [&] { SetTermOption("my-term.weight", "1", terms, &energy); },
+      "name of a term = my-term: expected letters, digits and _");
+}
+
+TEST(TermParameters, ReadBackWhateverTheyAre) {
+  class WithText : public StretchTerm {
+    void List(OptionList* list) override {
+      list->Text("file", &norm, "Of matches.");
+    }
+  };
+  TermRegistry terms("term");
+  terms.Register("text", [] { return std::make_unique<WithText>(); });
+  Energy energy = ParseEnergy("text(file=a/b.csv)", terms);
+  EXPECT_EQ(EnergyText(ParseEnergy(EnergyText(energy), terms)),
+            EnergyText(energy));
+  ExpectInputError(
+      [&] { SetTermOption("text.file", "a,b", terms, &energy); },
+      "text.file = a,b: expected a value without brackets and commas");
+}
+
 TEST(TermsHelp, HasANameALineAndAllElseIndented) {
   std::istringstream help(TermsHelp(WithStretch()));
   std::vector<std::string> names;
@@ -177,7 +224,7 @@ TEST(TermsHelp, HasANameALineAndAllElseIndented) {
     if (line.front() != ' ') names.push_back(line);
   }
   EXPECT_EQ(names, WithStretch().names());
-  EXPECT_NE(text.find("  length = 0.5 (metres > 0)\n      At rest.\n"),
+  EXPECT_NE(text.find("stretch\n  length = 0.5 (metres > 0)\n      At rest.\n"),
             std::string::npos)
       << text;
 }

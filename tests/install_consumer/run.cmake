@@ -30,20 +30,38 @@ set(bin "${STAGE_DIR}/prefix/bin")
 run("${bin}/sf_synth" --frames=3 --width=160 --height=120
     "--output=${STAGE_DIR}/sequence")
 set(arguments "--sequence=${STAGE_DIR}/sequence"
-    "--set=terms.stretch.weight=2\; terms.stretch.least=0.01")
+    "--terms=point_to_plane arap(weight=8) stretch(weight=2,least=0.01)")
 run("${bin}/sf_run" "--terms_library=${stretch}/libstretch.so"
     "--output=${STAGE_DIR}/library" ${arguments})
 run("${stretch}/sf_run_stretch" "--output=${STAGE_DIR}/program" ${arguments})
 foreach(run library program)
   file(READ "${STAGE_DIR}/${run}/frames.jsonl" frames)
-  if(NOT frames MATCHES "\"stretch\"")
-    message(FATAL_ERROR "${run}: frames.jsonl does not name the term")
+  string(REGEX MATCHALL
+    "\"term\": ?\"stretch\", ?\"residual_vectors\": ?[1-9][^}]*" ${run}
+    "${frames}")
+  if(NOT ${run})
+    message(FATAL_ERROR "${run}: no residuals of the term in frames.jsonl")
   endif()
 endforeach()
-file(READ "${STAGE_DIR}/library/trajectory.txt" library)
-file(READ "${STAGE_DIR}/program/trajectory.txt" program)
 if(NOT library STREQUAL program)
-  message(FATAL_ERROR "library and program give different trajectories")
+  message(FATAL_ERROR "library and program differ: ${library}\n${program}")
+endif()
+
+# What the library holds decides the result, and not where it lies.
+function(identity library result)
+  run("${bin}/sf_run" "--terms_library=${library}" --print_identity
+      ${arguments})
+  string(REGEX MATCH "\"identity\": ?\"[0-9a-f]+\"" identity "${output}")
+  set(${result} "${identity}" PARENT_SCOPE)
+endfunction()
+file(COPY "${stretch}/libstretch.so" DESTINATION "${STAGE_DIR}/copy")
+file(COPY "${stretch}/libstretch.so" DESTINATION "${STAGE_DIR}/changed")
+file(APPEND "${STAGE_DIR}/changed/libstretch.so" "x")
+identity("${stretch}/libstretch.so" built)
+identity("${STAGE_DIR}/copy/libstretch.so" copied)
+identity("${STAGE_DIR}/changed/libstretch.so" changed)
+if(NOT built OR NOT built STREQUAL copied OR built STREQUAL changed)
+  message(FATAL_ERROR "identities: ${built}, ${copied}, ${changed}")
 endif()
 
 # Libraries that must not be called into.
@@ -57,9 +75,10 @@ function(refuse library message)
 endfunction()
 
 file(WRITE "${STAGE_DIR}/older.cc" "
-struct Library { const char* build; void (*add)(void*); };
-extern \"C\" Library SplitFusionTerms() {
-  return {\"splitfusion 0.0.9 (0), compiler 11\", nullptr};
+extern \"C\" {
+extern const char SplitFusionTermsBuild[];
+const char SplitFusionTermsBuild[] = \"splitfusion 0.0.9 (0), compiler 11\";
+void SplitFusionAddTerms(void*) { __builtin_trap(); }
 }
 ")
 run(c++ -shared -fPIC "${STAGE_DIR}/older.cc" -o "${STAGE_DIR}/older.so")
@@ -71,4 +90,5 @@ refuse("${STAGE_DIR}/empty.so" "expected a library with SPLITFUSION_TERMS_LIB")
 refuse("${STAGE_DIR}/older.cc" "older.cc: cannot be loaded: ")
 refuse("${STAGE_DIR}/none.so" "none.so: expected a shared library")
 refuse("${stretch}/libstretch.so,${stretch}/libstretch.so"
-       "term 'stretch': already registered")
+       "libstretch.so: term 'stretch': already registered")
+refuse("${stretch}/libstretch.so,,x.so" "expected files, separated by commas")

@@ -83,6 +83,10 @@ TEST(DepthOptions, NamesFieldValueAndBound) {
   options.noise.least = 0;
   ExpectInputError([&] { options.Check(); },
                    "noise_least = 0: expected metres > 0");
+  options.noise = {};
+  options.noise.best = 2;
+  ExpectInputError([&] { options.Check(); },
+                   "noise_reference = 1.4: expected metres >= noise_best");
 }
 
 }  // namespace

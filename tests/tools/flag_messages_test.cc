@@ -34,7 +34,7 @@ TEST_F(FlagMessages, NameTheFlagWhereTheOptionHasAnotherName) {
              "--background_truncation = 0.01: expected 2 to 50 voxels");
   RunRefuses("--object_voxel=0.02", "--object_truncation = 0.03: expected 2 ");
   RunRefuses("--object_truncation=10", "--object_truncation = 10: expected 2 ");
-  RunRefuses("--max_depth=1e9", "--max_depth = 1e+09: expected metres above");
+  RunRefuses("--max_depth=1e9", "--max_depth = 1e+09: expected 0..100 metres");
   RunRefuses("--object_min_piece=-1", "--object_min_piece = -1: expected squ");
   RunRefuses("--solver_iterations=0", "--solver_iterations = 0: expected");
   RunRefuses("--linear_iterations=0", "--linear_iterations = 0: expected");
@@ -63,10 +63,10 @@ TEST_F(FlagMessages, NameTheFlagOfAnOptionOfTheSameName) {
 
 TEST_F(FlagMessages, NameTheTermsAndWhatIsWrongInThem) {
   RunRefuses("--terms='arap(weight=-1)'",
-             "--terms: arap.weight = -1: expected a number >= 0");
+             "--terms: arap.weight = -1: expected >= 0");
   RunRefuses("--terms='arap(scale=x)'", "--terms: arap.scale = x: expected");
   RunRefuses("--terms='arap(loss=none)'",
-             "--terms: loss = none: expected trivial, huber,");
+             "--terms: arap.loss = none: expected trivial, huber,");
   RunRefuses("--terms='arap(wait=1)'", "--terms: key 'wait' of term 'arap'");
   RunRefuses("--terms=arab", "--terms: term = arab: expected point_to_plane");
   RunRefuses("--terms=",
