@@ -5,8 +5,7 @@
 #include "splitfusion/lib/base/error.h"
 
 DEFINE_string(sequence, "", "Folder of the sequence.");
-DEFINE_string(format, "auto",
-              "Of the sequence: tum, 7scenes, or auto, what recognises it.");
+DEFINE_string(format, "auto", "tum, 7scenes, or auto: what recognises it.");
 DEFINE_int32(first_frame, 0, "Frames before it are skipped.");
 DEFINE_int32(max_frames, 0, "Frames read at most; 0 = all.");
 DEFINE_int32(threads, 2, "Threads of all but Ceres; 0 = one for each core.");

@@ -44,10 +44,8 @@ DEFINE_int32(checkpoint_every, 0,
 DEFINE_bool(keep_checkpoints, false, "Keep all checkpoints, for --from.");
 DEFINE_string(from, "", "Run with --keep_checkpoints to start from.");
 DEFINE_int32(at, 0, "First frame to compute after --from.");
-DEFINE_bool(help_terms, false,
-            "Print all terms of the energy with their keys, and end.");
-DEFINE_string(terms_library, "",
-              "Shared libraries with energy terms of your own, with commas.");
+DEFINE_bool(help_terms, false, "Print all terms with their keys, and end.");
+DEFINE_string(terms_library, "", "Libraries with terms of your own: FILE,...");
 DEFINE_bool(print_options, false, "Print all options of the method, and end.");
 DEFINE_bool(print_identity, false, "Print what decides the result, and end.");
 DEFINE_int32(warped_every, 10, "Warped meshes of every n-th frame; 0 = none.");
