@@ -25,8 +25,9 @@ struct MotionView {
   cv::Mat_<uchar> in_front;
 };
 
-/// Watches detections of rigid classes, which are background until they are
-/// seen to have moved: a large part of one stands where space was seen empty.
+/// Watches what stands where space was seen empty: detections of rigid classes,
+/// which are background until a large part of one does, and whatever else is in
+/// front of the background.
 class MovingObjects {
  public:
   /// `options`: as checked.

@@ -21,6 +21,23 @@ SurfacePrediction WallAlone() {
           cv::Mat_<float>(120, 160, 3.0f), cv::Mat_<float>(120, 160, 3.0f)};
 }
 
+/// Way of a camera that moves to the right, metres.
+double WayToTheRight(int frame) { return 0.03 * frame; }
+
+SurfacePrediction WallFromTheRight(int frame) {
+  SurfacePrediction prediction = WallAlone();
+  prediction.world_from_camera.translation().x() = WayToTheRight(frame);
+  return prediction;
+}
+
+/// A standing chair, at first beyond the image's border.
+LayeredScene ChairThatComesIntoView(int frame) {
+  LayeredScene scene(3.0, frame);
+  const double shift = SceneCamera().fx * WayToTheRight(frame) / 2.0;
+  scene.Add(ChairAt(static_cast<int>(165 - shift)), 2.0, 1);
+  return scene;
+}
+
 class MovingObjectsTest : public SplitterTest {
  protected:
   /// A frame with a chair at `x`; a tracker has mapped it at x = 20, where it
@@ -105,13 +122,8 @@ TEST_F(MovingObjectsTest, AChairBehindAPassingPersonStaysBackground) {
 
 TEST_F(MovingObjectsTest, WhatComesIntoViewBeforeAMappedWallHasNotMoved) {
   for (int i = 0; i < 40; ++i) {
-    SurfacePrediction prediction = WallAlone();
-    const double way = 0.03 * i;  // Of the camera, to the right, metres.
-    prediction.world_from_camera.translation().x() = way;
-    LayeredScene scene(3.0, i);
-    const int x = static_cast<int>(165 - SceneCamera().fx * way / 2.0);
-    scene.Add(ChairAt(x), 2.0, 1);
-    Split(scene, {{scene.Truth(1), "chair", 0.9}}, prediction);
+    LayeredScene scene = ChairThatComesIntoView(i);
+    Split(scene, {{scene.Truth(1), "chair", 0.9}}, WallFromTheRight(i));
     EXPECT_EQ(cv::countNonZero(last_.labels), 0) << i;
   }
   EXPECT_TRUE(splitter_.tracks().empty());
@@ -134,13 +146,8 @@ TEST_F(MovingObjectsTest, WhatNobodyDetectsIsNoBackgroundIfItCameLater) {
 
 TEST_F(MovingObjectsTest, WhatNobodyDetectsIsBackgroundIfItComesIntoView) {
   for (int i = 0; i < 40; ++i) {
-    SurfacePrediction prediction = WallAlone();
-    const double way = 0.03 * i;  // Of the camera, to the right, metres.
-    prediction.world_from_camera.translation().x() = way;
-    LayeredScene scene(3.0, i);
-    const int x = static_cast<int>(165 - SceneCamera().fx * way / 2.0);
-    scene.Add(ChairAt(x), 2.0, 1);
-    Split(scene, {}, prediction);
+    LayeredScene scene = ChairThatComesIntoView(i);
+    Split(scene, {}, WallFromTheRight(i));
     EXPECT_EQ(cv::countNonZero(last_.uncertain & scene.Truth(1)), 0) << i;
   }
 }
