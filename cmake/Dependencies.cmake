@@ -18,6 +18,11 @@ find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 find_library(XXHASH_LIBRARY xxhash REQUIRED)
 
+# Nor has HDF5 one of Debian's; FindHDF5 asks whatever h5cc comes first, which
+# may be that of MPI.
+find_path(HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
+find_library(HDF5_LIBRARY hdf5_serial REQUIRED)
+
 if(SPLITFUSION_BUILD_TOOLS)
   find_package(gflags REQUIRED)
   find_package(glog REQUIRED)
@@ -36,7 +41,8 @@ function(splitfusion_link_dependencies target)
     PUBLIC Eigen3::Eigen Ceres::ceres opencv_core opencv_imgproc
            opencv_imgcodecs TBB::tbb nlohmann_json::nlohmann_json
     PRIVATE opencv_dnn opencv_video OpenVDB::openvdb pcl_kdtree cholmod
-            SQLite::SQLite3 ${XXHASH_LIBRARY})
+            SQLite::SQLite3 ${XXHASH_LIBRARY} ${HDF5_LIBRARY})
   target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS}
-                             ${CHOLMOD_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR})
+                             ${CHOLMOD_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR}
+                             ${HDF5_INCLUDE_DIR})
 endfunction()

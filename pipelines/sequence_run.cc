@@ -160,6 +160,7 @@ bool SequenceRun::ProcessNext() {
   std::optional<PreparedFrame> prepared = frames_->Next();
   if (!prepared) return false;
   const Frame frame = prepared->frame;
+  if (options_.recorder) options_.recorder->BeginFrame(frame.index);
   FrameReport report = work_->fusion.ProcessFrame(std::move(*prepared));
   // Less than the sum of its parts: reading overlaps with the frame before.
   report.total_seconds = frame_time.Seconds();
@@ -170,6 +171,7 @@ bool SequenceRun::ProcessNext() {
   WarnOfCoarseGraphs(report.frame);
   const Stopwatch writing;
   WritePictures(frame, report.frame);
+  WriteProblems(report.frame);
   directory_->AddWritingSeconds(writing.Seconds());
   ++done_;
   const bool more = done_ < work_->reader.size();
@@ -202,6 +204,18 @@ void SequenceRun::WritePictures(const Frame& frame, int index) const {
   WriteFramePictures(directory_->paths(), index,
                      {frame.color, frame.depth, work_->fusion.labels(),
                       scene.map.color, depth, scene.map.normals});
+}
+
+void SequenceRun::WriteProblems(int index) const {
+  if (!options_.recorder) return;
+  options_.recorder->EndFrame(
+      [&](const FrozenProblem& problem) {
+        WriteFrozenProblem(directory_->paths().Problem(index, problem.surface),
+                           problem);
+      },
+      [&](const std::string& reason) {
+        Warn("frame " + std::to_string(index) + ": not frozen: " + reason);
+      });
 }
 
 void SequenceRun::ShowProgress() const {

@@ -9,6 +9,7 @@
 
 #include "splitfusion/lib/base/read_ahead.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/energy/problem_recorder.h"
 #include "splitfusion/lib/report/checkpoint_schedule.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
@@ -34,6 +35,9 @@ struct SequenceRunOptions {
   bool reads_ahead = true;        ///< The next frame, in a thread of its own.
   OtherState from;                ///< Where to begin.
   RunFacts facts;                 ///< What the run was made with.
+  /// What keeps the problems of the solvers of Reconstruction, to be written;
+  /// may be null.
+  std::shared_ptr<ProblemRecorder> recorder;
 };
 
 /// How far a run is.
@@ -114,6 +118,7 @@ class SequenceRun {
   bool ProcessNext();
   std::optional<PreparedFrame> ReadNext();
   void WritePictures(const Frame& frame, int index) const;
+  void WriteProblems(int index) const;
   void ShowProgress() const;
 
   void CheckReconstructed() const;

@@ -355,7 +355,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
          options_.keep_radius
              ? StartRadius(report->rounds, name, initial_radius_)
              : initial_radius_,
-         &association.lost, &target.tracks},
+         &association.lost, &target.tracks, target.surface},
         graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

@@ -11,9 +11,9 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "identity_flags.h"
 #include "interruption.h"
@@ -53,6 +53,8 @@ DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,
             "Warped meshes show also what was seen only later.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
+DEFINE_int32(freeze, 0,
+             "Problems of every n-th frame, for sf_solve; 0 = none.");
 DECLARE_string(format);
 DECLARE_string(masks);
 DECLARE_string(preset);
@@ -104,6 +106,9 @@ SequenceRunOptions RunOptionsFromFlags() {
   options.keep_checkpoints = FLAGS_keep_checkpoints;
   options.reads_ahead = ResolveThreads(FLAGS_threads) > 1;
   options.from = {FLAGS_from, FLAGS_at};
+  if (FLAGS_freeze > 0) {
+    options.recorder = std::make_shared<ProblemRecorder>(FLAGS_freeze);
+  }
   options.facts = {FLAGS_preset, FlagfileText(), LibraryVersions()};
   return options;
 }
@@ -163,6 +168,8 @@ void CheckValues() {
               "a number of frames, or 0");
   CheckOption(FLAGS_pictures_every >= 0, "pictures_every", FLAGS_pictures_every,
               "a number of frames, or 0");
+  CheckOption(FLAGS_freeze >= 0, "freeze", FLAGS_freeze,
+              "a number of frames, or 0");
   CheckOption(FLAGS_checkpoint_every >= -1, "checkpoint_every",
               FLAGS_checkpoint_every, "a number of frames, 0 or -1");
   CheckOption(!FLAGS_keep_checkpoints || FLAGS_checkpoint_every > 0,
@@ -183,10 +190,14 @@ void CheckOutput() {
 /// The run itself, unless --output holds it.
 int Reconstruct(
     const ReaderOptions& reading, const PipelineOptions& options,
-    const Registries& registries,
+    Registries registries,
     const std::function<RunIdentity(const ImageFolderReader&)>& identify) {
   CheckFrom(reading, registries.formats);
   const ThreadLimit threads(FLAGS_threads);
+  const SequenceRunOptions run_options = RunOptionsFromFlags();
+  if (run_options.recorder) {
+    registries.solvers = run_options.recorder->Watch(registries.solvers);
+  }
   const auto make = [&] {
     return MakeReconstruction(reading, options, registries);
   };
@@ -200,7 +211,7 @@ int Reconstruct(
   CheckDisk(work->reader, &folder);
   CatchInterruption();
   ProgressLine progress;
-  SequenceRun run(std::move(work), make, &folder, RunOptionsFromFlags(),
+  SequenceRun run(std::move(work), make, &folder, run_options,
                   Hooks(&progress));
   run.Execute();
   std::cout << VerdictLine(run.Summary()) << std::endl;
@@ -216,17 +227,10 @@ bool HasOwnCode(const Registries& registries) {
          registries.formats.names() != builtin.formats.names();
 }
 
-/// Loads the libraries of --terms_library. Returns the hash of their contents,
-/// whatever their order; "none" without any.
-std::string LoadTermsLibraries(TermRegistry* terms) {
+/// The hash of the contents of files, whatever their order; "none" without any.
+std::string HashOfFiles(const std::vector<std::string>& paths) {
   std::set<std::string> hashes;
-  std::istringstream list(FLAGS_terms_library);
-  for (std::string path; std::getline(list, path, ',');) {
-    CheckOption(!path.empty(), "terms_library", FLAGS_terms_library,
-                "files, separated by commas");
-    LoadTermsLibrary(path, terms);
-    hashes.insert(HashOfFile(path));
-  }
+  for (const std::string& path : paths) hashes.insert(HashOfFile(path));
   ContentHash all;
   for (const std::string& hash : hashes) all.Add(hash);
   return hashes.empty() ? "none" : all.Hex();
@@ -236,7 +240,8 @@ int RunSequence(Registries registries) {
   // Code that is not the toolkit's may change the result.
   const std::string program =
       HasOwnCode(registries) ? HashOfFile("/proc/self/exe") : "sf_run";
-  const std::string libraries = LoadTermsLibraries(&registries.terms);
+  const std::string libraries =
+      HashOfFiles(LoadTermsLibraries(FLAGS_terms_library, &registries.terms));
   if (FLAGS_help_terms) {
     std::cout << TermsHelp(registries.terms);
     return kExitDone;

@@ -140,9 +140,12 @@ void PrintHelp(const std::string& source, const std::string& usage) {
             << "Also --flagfile=FILE (one flag a line), --helpfull.\n";
 }
 
-/// @throw InputError if something on the command line is not a flag.
-void CheckNoArguments(int argc, char** argv) {
-  if (argc > 1) {
+/// @throw InputError if something on the command line is not a flag, but there
+///     is no room for it.
+void TakeArguments(int argc, char** argv, std::vector<std::string>* arguments) {
+  if (arguments != nullptr) {
+    arguments->assign(argv + 1, argv + argc);
+  } else if (argc > 1) {
     throw InputError("argument '" + std::string(argv[1]) +
                      "': expected flags only, see --help");
   }
@@ -150,7 +153,7 @@ void CheckNoArguments(int argc, char** argv) {
 
 /// False if the program was only asked for help.
 bool ParseFlags(int argc, char** argv, const std::string& source,
-                const std::string& usage) {
+                const std::string& usage, std::vector<std::string>* arguments) {
   gflags::SetUsageMessage(usage);
   GFLAGS_NAMESPACE::gflags_exitfunc = [](int code) {
     std::exit(code == 0 ? kExitDone : kExitBadInput);
@@ -162,7 +165,7 @@ bool ParseFlags(int argc, char** argv, const std::string& source,
     return false;
   }
   gflags::HandleCommandLineHelpFlags();
-  CheckNoArguments(argc, argv);
+  TakeArguments(argc, argv, arguments);
   return true;
 }
 
@@ -192,7 +195,8 @@ bool ParseFlags(int argc, char** argv, const std::string& source,
 }  // namespace
 
 int ToolMain(int argc, char** argv, const std::string& usage,
-             const std::function<int()>& body, const std::string& source) {
+             const std::function<int()>& body, const std::string& source,
+             std::vector<std::string>* arguments) {
   SecureStandardStreams();
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   KeepFreedMemory();
@@ -200,7 +204,8 @@ int ToolMain(int argc, char** argv, const std::string& usage,
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   try {
-    return ParseFlags(argc, argv, source.empty() ? name : source, usage)
+    return ParseFlags(argc, argv, source.empty() ? name : source, usage,
+                      arguments)
                ? body()
                : kExitDone;
   } catch (const OptionError& error) {

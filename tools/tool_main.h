@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace splitfusion {
 
@@ -25,9 +26,11 @@ enum ExitCode {
 ///
 /// `usage`: what the tool does and how it is called; whole lines. `source`: the
 /// file, without its extension, that defines the tool's own flags; empty: that
-/// of the program's name.
+/// of the program's name. `arguments`: receives what on the command line is no
+/// flag; null: there may be none.
 int ToolMain(int argc, char** argv, const std::string& usage,
-             const std::function<int()>& body, const std::string& source = "");
+             const std::function<int()>& body, const std::string& source = "",
+             std::vector<std::string>* arguments = nullptr);
 
 }  // namespace splitfusion
 

@@ -2,6 +2,10 @@
 
 #include <sys/resource.h>
 
+#include <fstream>
+#include <limits>
+#include <string>
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -12,6 +16,16 @@ std::int64_t PeakMemoryBytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return std::int64_t{usage.ru_maxrss} * 1024;  // Linux counts in KiB.
+}
+
+std::int64_t AvailableMemoryBytes() {
+  std::ifstream file("/proc/meminfo");
+  std::int64_t kib = 0;
+  for (std::string name; file >> name;) {
+    if (name == "MemAvailable:" && file >> kib) return kib * 1024;
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return std::numeric_limits<std::int64_t>::max();
 }
 
 void KeepFreedMemory() {

@@ -8,6 +8,10 @@ namespace splitfusion {
 /// Largest resident size of this process so far, bytes.
 std::int64_t PeakMemoryBytes();
 
+/// Memory that could be taken without swapping, bytes; the largest number where
+/// the system does not tell.
+std::int64_t AvailableMemoryBytes();
+
 /// Lets freed memory be used again instead of giving it back to the system:
 /// every frame asks for the same images and lists, megabytes each, and fresh
 /// pages cost more than what is done with them. For main(): it holds for the

@@ -96,9 +96,6 @@ void BlockProblem::MakeBlocks() {
     set.first_cost = static_cast<int>(costs.size());
     costs.resize(costs.size() + set.residuals->size());
   }
-  for (const BlockPattern::Block& b : pattern_.blocks()) {
-    residual_count_ += b.rows;
-  }
   pattern_.Finish(graph_.size());
   values_.reset(new double[pattern_.value_count()]);
 }

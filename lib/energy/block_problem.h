@@ -45,8 +45,6 @@ class BlockProblem {
 
   /// Terms of the energy.
   const std::vector<ProblemTerm>& terms() const { return terms_; }
-  /// Number of scalar residuals.
-  int residual_count() const { return residual_count_; }
 
  private:
   /// Residuals of one term over common points.
@@ -89,7 +87,6 @@ class BlockProblem {
   std::vector<ProblemTerm> terms_;
   std::vector<PointSet> point_sets_;
   std::vector<TupleSet> tuple_sets_;
-  int residual_count_ = 0;
   BlockPattern pattern_;
   std::vector<TwistedNode> twisted_;
   std::vector<std::vector<double>> costs_;  // By term and block of the term.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iomanip>
 #include <memory>
-#include <set>
+#include <sstream>
 #include <string>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/process_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/ceres_blocks.h"
 #include "splitfusion/lib/energy/solver.h"
@@ -30,7 +32,9 @@ class CeresProblem {
     for (int i = 0; i < graph.size(); ++i) {
       problem_.AddParameterBlock(&twists_[kTwistSize * i], kTwistSize);
     }
-    for (const ProblemTerm& term : CollectResiduals(input, graph)) {
+    const std::vector<ProblemTerm> terms = CollectResiduals(input, graph);
+    residual_count_ = CountResiduals(terms);
+    for (const ProblemTerm& term : terms) {
       AddedTerm added;
       added.cost = term.cost;
       for (ResidualBlock& block : MakeCeresBlocks(graph, term.residuals)) {
@@ -69,6 +73,8 @@ class CeresProblem {
   }
 
   ceres::Problem* problem() { return &problem_; }
+  /// Scalar residuals of the terms, before groups of points are joined.
+  int residual_count() const { return residual_count_; }
   const std::vector<double>& twists() const { return twists_; }
 
  private:
@@ -94,7 +100,25 @@ class CeresProblem {
   std::vector<double> twists_;
   ceres::Problem problem_;
   std::vector<AddedTerm> terms_;
+  int residual_count_ = 0;
 };
+
+bool IsDense(ceres::LinearSolverType type) {
+  return type == ceres::DENSE_QR || type == ceres::DENSE_NORMAL_CHOLESKY;
+}
+
+/// What a dense solver needs: the Jacobian, and the normal equations or another
+/// copy of it.
+double DenseBytes(const ceres::Problem& problem) {
+  return 2.0 * sizeof(double) * problem.NumParameters() *
+         std::max(problem.NumResiduals(), problem.NumParameters());
+}
+
+std::string Gigabytes(double bytes) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << bytes / 1e9 << " GB";
+  return text.str();
+}
 
 ceres::Solver::Options CeresOptions(const SolverOptions& options,
                                     const DeformationGraph& graph) {
@@ -110,8 +134,21 @@ ceres::Solver::Options CeresOptions(const SolverOptions& options,
   ceres::StringToPreconditionerType(
       Upper(is_auto ? "jacobi" : options.preconditioner),
       &ceres_options.preconditioner_type);
-  ceres::StringToTrustRegionStrategyType(
-      Upper(options.trust_region), &ceres_options.trust_region_strategy_type);
+  if (options.trust_region != "levenberg_marquardt") {
+    ceres_options.trust_region_strategy_type = ceres::DOGLEG;
+    ceres_options.dogleg_type = options.trust_region == "dogleg"
+                                    ? ceres::TRADITIONAL_DOGLEG
+                                    : ceres::SUBSPACE_DOGLEG;
+  }
+  if (options.minimizer != "trust_region") {
+    ceres_options.minimizer_type = ceres::LINE_SEARCH;
+    ceres_options.line_search_direction_type =
+        options.minimizer == "lbfgs" ? ceres::LBFGS
+                                     : ceres::NONLINEAR_CONJUGATE_GRADIENT;
+  }
+  ceres::StringToSparseLinearAlgebraLibraryType(
+      Upper(options.sparse_library),
+      &ceres_options.sparse_linear_algebra_library_type);
   ceres_options.num_threads = options.threads;
   ceres_options.max_num_iterations = options.max_iterations;
   ceres_options.max_linear_solver_iterations =
@@ -121,6 +158,7 @@ ceres::Solver::Options CeresOptions(const SolverOptions& options,
   ceres_options.gradient_tolerance = options.gradient_tolerance;
   ceres_options.parameter_tolerance = options.parameter_tolerance;
   ceres_options.initial_trust_region_radius = options.initial_radius;
+  ceres_options.max_solver_time_in_seconds = options.max_seconds;
   ceres_options.logging_type = ceres::SILENT;
   return ceres_options;
 }
@@ -135,7 +173,6 @@ void FillReport(const ceres::Solver::Summary& summary, bool full_report,
   report->initial_cost = summary.initial_cost;
   report->final_cost = summary.final_cost;
   report->parameters = summary.num_effective_parameters;
-  report->residuals = summary.num_residuals;
   report->jacobian_seconds = summary.jacobian_evaluation_time_in_seconds;
   report->linear_solver_seconds = summary.linear_solver_time_in_seconds;
   for (const ceres::IterationSummary& it : summary.iterations) {
@@ -163,8 +200,19 @@ class CeresSolver : public Solver {
     const Stopwatch stopwatch;
     SolverReport report;
     CeresProblem problem(input, *graph);
+    report.residuals = problem.residual_count();
     const std::vector<double> initial = problem.TermCosts();
     ceres::Solver::Options options = CeresOptions(options_, *graph);
+    const double needed = IsDense(options.linear_solver_type)
+                              ? DenseBytes(*problem.problem())
+                              : 0;
+    const auto free = static_cast<double>(AvailableMemoryBytes());
+    if (needed > free) {
+      report.termination = "FAILURE";
+      report.message = options_.linear_solver + " needs " + Gigabytes(needed) +
+                       " of memory: " + Gigabytes(free) + " are free";
+      return report;
+    }
     if (input.initial_radius > 0) {
       options.initial_trust_region_radius = input.initial_radius;
     }

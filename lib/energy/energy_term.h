@@ -41,6 +41,7 @@ struct EnergyInput {
   /// Model points and where point tracks have followed them to, see
   /// PointTracks; null where a problem is solved without them.
   const std::vector<TrackedPoint>* tracks = nullptr;
+  int surface = 0;  ///< Id; 0 = background.
 };
 
 /// One term of the energy (SplitFusion Eq. 4).

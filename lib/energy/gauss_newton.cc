@@ -9,6 +9,7 @@
 #include "splitfusion/lib/energy/block_problem.h"
 #include "splitfusion/lib/energy/linear_solver.h"
 #include "splitfusion/lib/energy/solver.h"
+#include "splitfusion/lib/energy/term_residuals.h"
 
 namespace splitfusion {
 namespace {
@@ -56,7 +57,7 @@ class Minimization {
     const bool finite = EvaluateJacobians();
     report_.usable = finite;
     report_.parameters = static_cast<int>(twists_.size());
-    report_.residuals = problem_.residual_count();
+    report_.residuals = CountResiduals(problem_.terms());
     report_.initial_cost = report_.final_cost = problem_.Cost();
     report_.termination = finite ? "NO_CONVERGENCE" : "FAILURE";
     report_.message = finite ? "Maximum number of iterations reached."
@@ -67,14 +68,22 @@ class Minimization {
   /// Iterates until a tolerance or the number of iterations is reached.
   void Run() {
     if (!report_.usable) return;
-    Linearize();
     AddStart();
+    const Stopwatch watch;
     for (int i = 1; i <= options_.max_iterations; ++i) {
+      if (watch.Seconds() > options_.max_seconds) {
+        report_.message = "Maximum time reached.";
+        return;
+      }
+      LinearizeHere();
+      if (report_.iterations.back().gradient_max_norm <=
+          options_.gradient_tolerance) {
+        return Converge("Gradient below its tolerance.");
+      }
       report_.iterations.push_back(Iterate(i));
-      if (!Converged(report_.iterations.back())) continue;
-      report_.termination = "CONVERGENCE";
-      report_.message = "Cost, gradient or step below its tolerance.";
-      return;
+      if (HasSettled(report_.iterations.back())) {
+        return Converge("Change of the cost or step below its tolerance.");
+      }
     }
   }
 
@@ -100,13 +109,27 @@ class Minimization {
     return finite;
   }
 
-  /// Normal equations of the Jacobians evaluated last.
-  void Linearize() {
+  void Converge(const std::string& message) {
+    report_.termination = "CONVERGENCE";
+    report_.message = message;
+  }
+
+  /// Normal equations at the twists reached, and, in the iteration that reached
+  /// them, the gradient there.
+  void LinearizeHere() {
+    if (linearized_) return;
+    SolverIteration& reached = report_.iterations.back();
+    const Stopwatch watch;
+    if (reached.iteration > 0) EvaluateJacobians();
+    const Stopwatch assembly;
     problem_.Assemble(&matrix_, &gradient_);
     for (int i = 0; i < matrix_.size(); ++i) {
       diagonal_[i] = matrix_.Diagonal(i).diagonal();
     }
     linearized_ = true;
+    report_.linear_solver_seconds += assembly.Seconds();
+    reached.gradient_max_norm = MaxNorm(gradient_);
+    reached.seconds += watch.Seconds();
   }
 
   /// Adds diag(J^T J) / radius, Ceres' Levenberg-Marquardt damping.
@@ -130,7 +153,6 @@ class Minimization {
   void AddStart() {
     SolverIteration start;
     start.cost = report_.initial_cost;
-    start.gradient_max_norm = MaxNorm(gradient_);
     start.trust_region_radius = radius_;
     start.seconds = report_.jacobian_seconds;
     report_.iterations.push_back(start);
@@ -140,10 +162,9 @@ class Minimization {
     const Stopwatch iteration_watch;
     SolverIteration iteration;
     iteration.iteration = number;
-    if (!linearized_) EvaluateJacobians();
+    // Not known before it is needed: it takes the Jacobians.
+    iteration.gradient_max_norm = std::nan("");
     const Stopwatch watch;
-    if (!linearized_) Linearize();
-    iteration.gradient_max_norm = MaxNorm(gradient_);
     const LinearSolution solution = SolveStep();
     report_.linear_solver_seconds += watch.Seconds();
     iteration.linear_solver_iterations = solution.iterations;
@@ -166,6 +187,8 @@ class Minimization {
     iteration->cost_change = finite ? report_.final_cost - cost : 0;
     if (!iteration->accepted) {
       radius_ /= 4;
+      // Where it still is.
+      iteration->gradient_max_norm = MaxNorm(gradient_);
       return;
     }
     twists_ = std::move(moved);
@@ -175,12 +198,11 @@ class Minimization {
     linearized_ = false;
   }
 
-  bool Converged(const SolverIteration& iteration) const {
-    return iteration.accepted &&
-           (iteration.cost_change <=
-                options_.function_tolerance * report_.final_cost ||
-            iteration.gradient_max_norm <= options_.gradient_tolerance ||
-            iteration.step_norm <= options_.parameter_tolerance);
+  bool HasSettled(const SolverIteration& iteration) const {
+    return iteration.step_norm <= options_.parameter_tolerance ||
+           (iteration.accepted &&
+            iteration.cost_change <=
+                options_.function_tolerance * report_.final_cost);
   }
 
   const SolverOptions& options_;

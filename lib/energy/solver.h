@@ -27,8 +27,12 @@ struct SolverOptions {
   std::string linear_solver = "auto";
   /// Of gn_pcg and cgnr: jacobi (auto; the diagonal blocks) or identity.
   std::string preconditioner = "auto";
-  /// levenberg_marquardt or dogleg.
+  /// levenberg_marquardt, dogleg or subspace_dogleg.
   std::string trust_region = "levenberg_marquardt";
+  /// trust_region, or without one, by line search, lbfgs or nonlinear_cg.
+  std::string minimizer = "trust_region";
+  /// Of sparse_normal_cholesky: suite_sparse or eigen_sparse.
+  std::string sparse_library = "suite_sparse";
   int threads = 1;         ///< Of Ceres; with more the last digits vary.
   int max_iterations = 1;  ///< Per association: a new one tells more.
   int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.
@@ -46,12 +50,19 @@ struct SolverOptions {
   /// the rest swing by up to a right angle in a frame; with 1e2, limbs in view
   /// are followed too slowly.
   double initial_radius = 1e3;
-  bool full_report = false;  ///< Keep Ceres' FullReport() text.
+  bool full_report = false;  ///< Keep a text of all there is to say.
+  /// No iteration begins later, seconds; no flag of a run, whose result must not
+  /// depend on the clock.
+  double max_seconds = 1e9;
 
   /// Names, ranges and meaning of all fields.
   void List(OptionList* list);
   /// @throw OptionError if a value is out of its range.
   void Check() const;
+
+ private:
+  /// What only one of the built-in solvers takes is refused of the others.
+  void DemandEffect(OptionList* list) const;
 };
 
 /// The problem of one surface at one association.
@@ -73,6 +84,7 @@ struct SurfaceProblem {
   const std::vector<Correspondence>* lost = nullptr;
   /// As `live`.
   const std::vector<TrackedPoint>* tracks = nullptr;
+  int surface = 0;  ///< Id; 0 = background.
 };
 
 /// A way to minimise energies. Minimize() may run on several threads at once.

@@ -16,13 +16,16 @@ void SolverOptions::List(OptionList* list) {
                {"auto", "jacobi", "identity"},
                "Of gn_pcg and cgnr; auto is jacobi.")
       .common = true;
-  list->Choice("trust_region", &trust_region, {"levenberg_marquardt", "dogleg"},
+  list->Choice("trust_region", &trust_region,
+               {"levenberg_marquardt", "dogleg", "subspace_dogleg"},
                "Of ceres: how a step is kept short.")
       .common = true;
-  list->Demand(trust_region != "dogleg" || linear_solver != "cgnr",
-               "trust_region",
-               "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
-               "factorisation)");
+  list->Choice("minimizer", &minimizer,
+               {"trust_region", "lbfgs", "nonlinear_cg"},
+               "Of ceres: steps of a linear solver in a trust region, or line "
+               "searches without one.");
+  list->Choice("sparse_library", &sparse_library,
+               {"suite_sparse", "eigen_sparse"}, "Of sparse_normal_cholesky.");
   list->Number("solver_threads", &threads, {1, 1024}, "threads",
                "Of ceres; with more the last digits change from run to run.");
   list->Number("solver_iterations", &max_iterations, Range::AtLeast(1), "",
@@ -43,7 +46,48 @@ void SolverOptions::List(OptionList* list) {
   list->Number("initial_radius", &initial_radius, Range::Above(0), "",
                "First radius of the trust region; 1 / damping.");
   list->Switch("full_report", &full_report,
-               "Of ceres: write FullReport() of every solve.");
+               "Write all there is to say of every solve; of ceres its "
+               "FullReport().");
+  DemandEffect(list);
+}
+
+void SolverOptions::DemandEffect(OptionList* list) const {
+  const SolverOptions unset;
+  const bool ceres = solver == "ceres";
+  const bool gauss_newton = solver == "gn_pcg" || solver == "gn_cholesky";
+  const bool line_search = minimizer != unset.minimizer;
+  const bool conjugate_gradients =
+      solver == "gn_pcg" || (ceres && linear_solver == "cgnr");
+  const auto demand = [&](bool holds, const std::string& name,
+                          const std::string& by_default,
+                          const std::string& where) {
+    list->Demand(holds, name,
+                 by_default + ", as it has no effect but with " + where);
+  };
+  demand(!gauss_newton || linear_solver == unset.linear_solver, "linear_solver",
+         unset.linear_solver, "solver ceres");
+  demand(!gauss_newton || trust_region == unset.trust_region, "trust_region",
+         unset.trust_region, "solver ceres");
+  demand(!gauss_newton || !line_search, "minimizer", unset.minimizer,
+         "solver ceres");
+  demand(!line_search || (linear_solver == unset.linear_solver &&
+                          trust_region == unset.trust_region),
+         "minimizer", unset.minimizer,
+         "linear_solver and trust_region left alone");
+  demand(!(ceres || gauss_newton) || conjugate_gradients ||
+             preconditioner == unset.preconditioner,
+         "preconditioner", unset.preconditioner,
+         "solver gn_pcg or linear_solver cgnr");
+  demand(sparse_library == unset.sparse_library ||
+             (ceres && linear_solver == "sparse_normal_cholesky"),
+         "sparse_library", unset.sparse_library,
+         "linear_solver sparse_normal_cholesky");
+  demand(!gauss_newton || threads == unset.threads, "solver_threads",
+         std::to_string(unset.threads), "solver ceres");
+  list->Demand(trust_region == unset.trust_region || linear_solver != "cgnr",
+               "trust_region",
+               "levenberg_marquardt with linear_solver cgnr (dogleg needs a "
+               "factorisation)");
 }
 
 void SolverOptions::Check() const { CheckOptions(*this); }

@@ -27,7 +27,8 @@ struct SolverIteration {
   double cost = 0;
   /// Decrease of the cost by the step.
   double cost_change = 0;
-  /// Largest entry of the gradient.
+  /// Largest entry of the gradient after the iteration; NaN where it was not
+  /// evaluated: by gn_* after the last step.
   double gradient_max_norm = 0;
   /// Length of the step (radians, metres).
   double step_norm = 0;

@@ -10,9 +10,10 @@ namespace splitfusion {
 
 std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
                                           const DeformationGraph& graph) {
-  const EnergyInput input{graph,        problem.correspondences, problem.camera,
-                          problem.live, problem.before,          problem.anneal,
-                          problem.lost, problem.tracks};
+  const EnergyInput input{
+      graph,        problem.correspondences, problem.camera,
+      problem.live, problem.before,          problem.anneal,
+      problem.lost, problem.tracks,          problem.surface};
   std::vector<ProblemTerm> terms;
   WarpedPointsCache cache;
   for (const WeightedTerm& weighted : problem.energy) {
@@ -25,6 +26,20 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
     terms.push_back(std::move(term));
   }
   return terms;
+}
+
+int CountResiduals(const std::vector<ProblemTerm>& terms) {
+  int count = 0;
+  for (const ProblemTerm& term : terms) {
+    const TermResiduals& residuals = term.residuals;
+    if (residuals.points != nullptr) {
+      count += residuals.points->size() * residuals.of_points->dims();
+    }
+    if (residuals.of_nodes != nullptr) {
+      count += residuals.of_nodes->size() * residuals.of_nodes->dims();
+    }
+  }
+  return count;
 }
 
 void ComposeTwists(const std::vector<double>& twists, DeformationGraph* graph) {

@@ -20,6 +20,9 @@ struct ProblemTerm {
 std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
                                           const DeformationGraph& graph);
 
+/// Number of scalar residuals of all terms.
+int CountResiduals(const std::vector<ProblemTerm>& terms);
+
 /// Composes the twists (6 per node, [omega, tau]) onto the motions:
 /// R_i <- exp(omega_i) R_i, t_i <- t_i + tau_i.
 void ComposeTwists(const std::vector<double>& twists, DeformationGraph* graph);

@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 
 #include <filesystem>
+#include <sstream>
 
 #include "splitfusion/lib/base/error.h"
 
@@ -36,6 +37,19 @@ void LoadTermsLibrary(const std::string& path, TermRegistry* terms) {
   } catch (const InputError& clash) {
     refuse(clash.what());
   }
+}
+
+std::vector<std::string> LoadTermsLibraries(const std::string& list,
+                                            TermRegistry* terms) {
+  std::vector<std::string> paths;
+  std::istringstream stream(list);
+  for (std::string path; std::getline(stream, path, ',');) {
+    CheckOption(!path.empty(), "terms_library", list,
+                "files, separated by commas");
+    LoadTermsLibrary(path, terms);
+    paths.push_back(path);
+  }
+  return paths;
 }
 
 }  // namespace splitfusion

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/method_hash.h"
@@ -44,6 +45,12 @@ namespace splitfusion {
 /// @throw InputError if the file cannot be loaded, is no such library, was
 ///     built with something else, or has a term of a name that is taken.
 void LoadTermsLibrary(const std::string& path, TermRegistry* terms);
+
+/// The same of several, FILE,FILE,...; returns their paths. Empty text: none.
+///
+/// @throw InputError as of one.
+std::vector<std::string> LoadTermsLibraries(const std::string& list,
+                                            TermRegistry* terms);
 
 }  // namespace splitfusion
 

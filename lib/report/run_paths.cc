@@ -36,6 +36,10 @@ std::string RunPaths::HtmlReport() const { return Below("report.html"); }
 std::string RunPaths::Pictures() const { return Below("pictures"); }
 std::string RunPaths::Detections() const { return Below("detections"); }
 
+std::string RunPaths::Problem(int frame, int surface) const {
+  return Below("problems/" + FrameName(frame) + cv::format("_%03d.h5", surface));
+}
+
 std::string RunPaths::Surface(int id, const std::string& label) const {
   return Below("surfaces/" + SurfaceName(id, label));
 }
@@ -55,13 +59,13 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
 
 bool RunPaths::IsOfRun(const std::string& name) {
   const RunPaths here("");
-  const std::array<std::string, 16> names = {
+  const std::array<std::string, 17> names = {
       here.Marker(),     here.Checkpoint(),  "checkpoints",
       here.Options(),    here.Calibration(), here.Trajectory(),
       here.Frames(),     here.Iterations(),  here.Summary(),
       here.Evaluation(), here.HtmlReport(),  here.Pictures(),
       here.Detections(), "solver",           "masks",
-      "surfaces"};
+      "surfaces",        "problems"};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 

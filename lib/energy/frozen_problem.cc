@@ -1,0 +1,348 @@
+#include "splitfusion/lib/energy/frozen_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/hdf5_file.h"
+#include "splitfusion/lib/energy/block_problem.h"
+
+namespace splitfusion {
+namespace {
+
+constexpr int kVersion = 1;                             // Format.
+constexpr const char* kFormat = "splitfusion problem";  // Format.
+
+/// A directed edge of the graph.
+using Edge = std::array<std::int32_t, 2>;
+
+/// Whether two costs are the same, but for the order of their sums.
+bool AreEqual(double a, double b) {
+  constexpr double kRounding = 1e-12;  // Maths.
+  return std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));
+}
+
+/// @throw InputError if a term looks beyond what is kept.
+void CheckComplete(const FrozenProblem& problem,
+                   const std::vector<double>& with_live) {
+  const std::vector<double> without =
+      EvaluateStart(problem.View(), problem.graph).terms;
+  for (std::size_t i = 0; i < without.size(); ++i) {
+    if (AreEqual(without[i], with_live[i])) continue;
+    throw InputError("term '" + problem.energy[i].options.name +
+                     "' looks at the live frame: expected terms that do not, "
+                     "as it is not kept in a frozen problem");
+  }
+}
+
+// What writes and what reads are one function, so that they agree; `File`:
+// Hdf5Writer or Hdf5Reader.
+
+template <typename File>
+void VisitMotions(File* file, const std::string& group,
+                  std::vector<NodeMotion>* motions) {
+  file->Column(
+      group + "/rotation", motions,
+      [](NodeMotion & m) -> auto& { return m.rotation; });
+  file->Column(
+      group + "/translation", motions,
+      [](NodeMotion & m) -> auto& { return m.translation; });
+}
+
+/// Model points of correspondences or tracks.
+template <typename File, typename Item>
+void VisitModel(File* file, const std::string& group,
+                std::vector<Item>* items) {
+  const auto column = [&](const std::string& name, const auto& of) {
+    file->Column(group + "/" + name, items, of);
+  };
+  column(
+      "point", [](Item & i) -> auto& { return i.model.point; });
+  column(
+      "normal", [](Item & i) -> auto& { return i.model.normal; });
+  column(
+      "intensity", [](Item & i) -> auto& { return i.model.intensity; });
+  column(
+      "u", [](Item & i) -> auto& { return i.model.u; });
+  column(
+      "v", [](Item & i) -> auto& { return i.model.v; });
+  column(
+      "nodes", [](Item & i) -> auto& { return i.model.skinning.nodes; });
+  column(
+      "weights", [](Item & i) -> auto& { return i.model.skinning.weights; });
+  column(
+      "node_count", [](Item & i) -> auto& { return i.model.skinning.count; });
+}
+
+template <typename File>
+void VisitPairs(File* file, const std::string& group,
+                std::vector<Correspondence>* pairs) {
+  using C = Correspondence;
+  const auto column = [&](const std::string& name, const auto& of) {
+    file->Column(group + "/" + name, pairs, of);
+  };
+  VisitModel(file, group, pairs);
+  column(
+      "warped_normal", [](C & c) -> auto& { return c.warped_normal; });
+  column(
+      "target", [](C & c) -> auto& { return c.target; });
+  column(
+      "target_normal", [](C & c) -> auto& { return c.target_normal; });
+  column(
+      "confidence", [](C & c) -> auto& { return c.weight; });
+  column(
+      "pixel", [](C & c) -> auto& { return c.pixel; });
+  column(
+      "intensity_difference",
+      [](C & c) -> auto& { return c.intensity_difference; });
+  column(
+      "intensity_gradient",
+      [](C & c) -> auto& { return c.intensity_gradient; });
+}
+
+template <typename File>
+void VisitTracks(File* file, const std::string& group,
+                 std::vector<TrackedPoint>* tracks) {
+  VisitModel(file, group, tracks);
+  file->Column(
+      group + "/target", tracks,
+      [](TrackedPoint & t) -> auto& { return t.target; });
+  file->Column(
+      group + "/confidence", tracks,
+      [](TrackedPoint & t) -> auto& { return t.weight; });
+}
+
+/// What may be missing, by `visit`.
+template <typename File, typename T, typename Visit>
+void VisitOptional(File* file, const std::string& group,
+                   std::optional<std::vector<T>>* values, const Visit& visit) {
+  if (!file->Has(group, values->has_value())) return;
+  if (!values->has_value()) values->emplace();
+  visit(file, group, &**values);
+}
+
+template <typename File>
+void VisitCamera(File* file, PinholeCamera* camera) {
+  file->Attribute("width", &camera->width);
+  file->Attribute("height", &camera->height);
+  file->Attribute("fx", &camera->fx);
+  file->Attribute("fy", &camera->fy);
+  file->Attribute("cx", &camera->cx);
+  file->Attribute("cy", &camera->cy);
+  file->Attribute("noise_least", &camera->noise.least);
+  file->Attribute("noise_growth", &camera->noise.growth);
+  file->Attribute("noise_best", &camera->noise.best);
+  file->Attribute("noise_reference", &camera->noise.reference);
+}
+
+/// Everything but the energy, which is a text, and the edges.
+template <typename File>
+void Visit(File* file, FrozenProblem* problem, std::vector<Edge>* edges) {
+  file->Attribute("frame", &problem->frame);
+  file->Attribute("surface", &problem->surface);
+  file->Attribute("anneal", &problem->anneal);
+  file->Attribute("initial_radius", &problem->initial_radius);
+  file->Attribute("node_spacing", &problem->graph.node_spacing);
+  file->Attribute("start_cost", &problem->start.cost);
+  file->Attribute("solver", &problem->solver);
+  file->Attribute("final_cost", &problem->final_cost);
+  VisitCamera(file, &problem->camera);
+  file->Column("graph/position", &problem->graph.positions);
+  VisitMotions(file, "graph", &problem->graph.motions);
+  file->Column("graph/start_gradient", &problem->start.gradient);
+  file->Column("edges/nodes", edges);
+  file->Column("terms/start_cost", &problem->start.terms);
+  VisitPairs(file, "correspondences", &problem->correspondences);
+  const auto motions = [](File* f, const std::string& group,
+                          std::vector<NodeMotion>* values) {
+    VisitMotions(f, group, values);
+  };
+  const auto pairs = [](File* f, const std::string& group,
+                        std::vector<Correspondence>* values) {
+    VisitPairs(f, group, values);
+  };
+  const auto tracks = [](File* f, const std::string& group,
+                         std::vector<TrackedPoint>* values) {
+    VisitTracks(f, group, values);
+  };
+  VisitOptional(file, "before", &problem->before, motions);
+  VisitOptional(file, "lost", &problem->lost, pairs);
+  VisitOptional(file, "tracks", &problem->tracks, tracks);
+}
+
+std::vector<Edge> EdgesOf(const DeformationGraph& graph) {
+  std::vector<Edge> edges;
+  for (int i = 0; i < graph.size(); ++i) {
+    for (const int j : graph.neighbors[i]) edges.push_back({i, j});
+  }
+  return edges;
+}
+
+/// Checks what datasets say of each other.
+class Check {
+ public:
+  Check(const Hdf5Reader& file, const FrozenProblem& problem)
+      : file_(file), problem_(problem) {}
+
+  void Edges(const std::vector<Edge>& edges) const {
+    for (const auto& [i, j] : edges) {
+      if (!IsNode(i) || !IsNode(j) || i == j) {
+        file_.Fail("edges/nodes: " + std::to_string(i) + ", " +
+                   std::to_string(j) + ": expected two of " + Nodes());
+      }
+    }
+  }
+
+  void Sizes() const {
+    if (problem_.graph.size() == 0) file_.Fail("graph: expected a node");
+    if (problem_.before &&
+        static_cast<int>(problem_.before->size()) != problem_.graph.size()) {
+      file_.Fail("before: expected a motion of each of " + Nodes());
+    }
+    if (problem_.start.terms.size() != problem_.energy.size()) {
+      file_.Fail("terms/start_cost: expected one of each of " +
+                 std::to_string(problem_.energy.size()) + " terms");
+    }
+  }
+
+  template <typename Item>
+  void Skinning(const std::string& group,
+                const std::vector<Item>& items) const {
+    for (const Item& item : items) {
+      const splitfusion::Skinning& skinning = item.model.skinning;
+      const bool counted =
+          skinning.count >= 1 && skinning.count <= kMaxSkinningNodes;
+      for (int k = 0; counted && k < skinning.count; ++k) {
+        if (IsNode(skinning.nodes[k]) &&
+            (k == 0 || skinning.nodes[k] > skinning.nodes[k - 1])) {
+          continue;
+        }
+        file_.Fail(group + "/nodes: expected ascending ones of " + Nodes());
+      }
+      if (!counted) file_.Fail(group + "/node_count: expected 1..8");
+    }
+  }
+
+ private:
+  bool IsNode(int node) const {
+    return node >= 0 && node < problem_.graph.size();
+  }
+  std::string Nodes() const {
+    return std::to_string(problem_.graph.size()) + " nodes";
+  }
+
+  const Hdf5Reader& file_;
+  const FrozenProblem& problem_;
+};
+
+void CheckContent(const Hdf5Reader& file, const FrozenProblem& problem,
+                  const std::vector<Edge>& edges) {
+  const Check check(file, problem);
+  check.Sizes();
+  check.Edges(edges);
+  check.Skinning("correspondences", problem.correspondences);
+  if (problem.lost) check.Skinning("lost", *problem.lost);
+  if (problem.tracks) check.Skinning("tracks", *problem.tracks);
+}
+
+/// The address of what is there.
+template <typename T>
+const T* AddressOf(const std::optional<T>& value) {
+  return value ? &*value : nullptr;
+}
+
+/// A copy of what is there.
+template <typename T>
+std::optional<T> CopyOf(const T* value) {
+  return value != nullptr ? std::optional<T>(*value) : std::nullopt;
+}
+
+}  // namespace
+
+ProblemStart EvaluateStart(const SurfaceProblem& problem,
+                           const DeformationGraph& graph) {
+  BlockProblem blocks(problem, graph);
+  blocks.Evaluate(std::vector<double>(kTwistSize * graph.size(), 0.0),
+                  /*with_jacobians=*/true);
+  ProblemStart start;
+  start.cost = blocks.Cost();
+  start.terms = blocks.TermCosts();
+  SymmetricBlockMatrix matrix = blocks.MakeMatrix();
+  blocks.Assemble(&matrix, &start.gradient);
+  return start;
+}
+
+SurfaceProblem FrozenProblem::View() const {
+  SurfaceProblem view{energy, correspondences, camera};
+  view.before = AddressOf(before);
+  view.anneal = anneal;
+  view.initial_radius = initial_radius;
+  view.lost = AddressOf(lost);
+  view.tracks = AddressOf(tracks);
+  return view;
+}
+
+FrozenProblem Freeze(const SurfaceProblem& problem,
+                     const DeformationGraph& graph) {
+  FrozenProblem frozen;
+  frozen.surface = problem.surface;
+  frozen.energy = problem.energy;
+  frozen.camera = problem.camera;
+  frozen.anneal = problem.anneal;
+  frozen.initial_radius = problem.initial_radius;
+  frozen.graph = graph;
+  frozen.correspondences = problem.correspondences;
+  frozen.lost = CopyOf(problem.lost);
+  frozen.tracks = CopyOf(problem.tracks);
+  frozen.before = CopyOf(problem.before);
+  frozen.start = EvaluateStart(problem, graph);
+  CheckComplete(frozen, frozen.start.terms);
+  return frozen;
+}
+
+void WriteFrozenProblem(const std::string& path, const FrozenProblem& problem) {
+  WritePathAtomically(path, [&](const std::string& temporary) {
+    FrozenProblem copy = problem;  // Both directions take what may change.
+    std::string format = kFormat, energy = EnergyText(problem.energy);
+    std::int32_t version = kVersion;
+    std::vector<Edge> edges = EdgesOf(problem.graph);
+    Hdf5Writer file(temporary);
+    file.Attribute("format", &format);
+    file.Attribute("version", &version);
+    file.Attribute("energy", &energy);
+    Visit(&file, &copy, &edges);
+    file.Close();
+  });
+}
+
+FrozenProblem ReadFrozenProblem(const std::string& path,
+                                const TermRegistry& terms) {
+  Hdf5Reader file(path);
+  std::string format, energy;
+  std::int32_t version = 0;
+  file.Attribute("format", &format);
+  file.Attribute("version", &version);
+  if (format != kFormat || version != kVersion) {
+    file.Fail("is a '" + format + "' of version " + std::to_string(version) +
+              ": expected a '" + kFormat + "' of version " +
+              std::to_string(kVersion));
+  }
+  FrozenProblem problem;
+  std::vector<Edge> edges;
+  file.Attribute("energy", &energy);
+  Visit(&file, &problem, &edges);
+  try {
+    problem.energy = ParseEnergy(energy, terms);
+    problem.camera.Check();
+  } catch (const InputError& error) {
+    file.Fail(error.what());
+  }
+  CheckContent(file, problem, edges);
+  problem.graph.neighbors.resize(problem.graph.size());
+  for (const auto& [i, j] : edges) problem.graph.neighbors[i].push_back(j);
+  return problem;
+}
+
+}  // namespace splitfusion
