@@ -40,11 +40,11 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   report.read_seconds = prepared.read_seconds;
   report.segment_seconds = prepared.segment_seconds;
   live_ = std::move(prepared.live);
-  PredictMotions();
+  PredictMotions(frame.world_from_camera);
   Split(prepared, &report);
   if (!surfaces_.empty()) {
     FollowPoints(&report);
-    TrackBackground(&report);
+    TrackBackground(frame.world_from_camera.has_value(), &report);
     TrackObjects(&report);
     Fuse(&report);
     ReanchorLostSurfaces(&report);
@@ -56,10 +56,11 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   return report;
 }
 
-void SplitFusion::PredictMotions() {
+void SplitFusion::PredictMotions(const std::optional<Rigid3d>& given) {
   if (surfaces_.empty()) return;
   const Rigid3d world_from_camera = WorldFromCamera();
-  const Rigid3d camera_motion = predictors_.at(0).velocity();
+  const Rigid3d camera_motion = given ? given->inverse() * world_from_camera
+                                      : predictors_.at(0).velocity();
   const Rigid3d camera_from_world = camera_motion * world_from_camera.inverse();
   for (const auto& [id, surface] : surfaces_) {
     const Rigid3d motion = id == 0 ? camera_motion
@@ -134,11 +135,16 @@ bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
   return tracked;
 }
 
-void SplitFusion::TrackBackground(FrameReport* report) {
+void SplitFusion::TrackBackground(bool given, FrameReport* report) {
   Stopwatch stopwatch;
   Surface& background = *surfaces_.at(0);
   SurfaceReport surface;
   surface.id = 0;
+  if (given) {
+    background_state_ = TrackState::kTracked;
+    report->surfaces.push_back(std::move(surface));
+    return;
+  }
   const std::vector<ModelSample> samples =
       background.is_ray_cast()
           ? BackgroundSamples(background_map_,

@@ -64,7 +64,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 9;  // Format.
+  static constexpr std::uint32_t kStateVersion = 10;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -77,7 +77,8 @@ class SplitFusion {
   void Serialize(Archive* archive);
 
  private:
-  void PredictMotions();
+  /// `given`: known pose of the camera, world from camera.
+  void PredictMotions(const std::optional<Rigid3d>& given);
   void Split(const PreparedFrame& prepared, FrameReport* report);
   /// Follows points of all surfaces, but of a background that is ray cast, from
   /// the frame before.
@@ -87,7 +88,8 @@ class SplitFusion {
   bool TrackSurface(const std::vector<ModelSample>& samples,
                     const Rigid3d& still, Surface* surface,
                     SurfaceReport* report);
-  void TrackBackground(FrameReport* report);
+  /// Leaves it where it is predicted if the pose of the camera is `given`.
+  void TrackBackground(bool given, FrameReport* report);
   /// Every object on its own and at the same time.
   void TrackObjects(FrameReport* report);
   /// Reports of all objects: what is in view of each.

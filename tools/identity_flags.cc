@@ -28,6 +28,7 @@ DECLARE_string(labels);
 DECLARE_string(masks);
 DECLARE_string(model);
 DECLARE_string(sequence);
+DECLARE_string(trajectory);
 
 namespace splitfusion {
 namespace {
@@ -55,6 +56,7 @@ const std::set<std::string>& Uncounted() {
                                               "terms",
                                               "terms_library",
                                               "threads",
+                                              "trajectory",
                                               "intrinsics",
                                               "depth_scale",
                                               "skip_bad_frames",
@@ -65,8 +67,8 @@ const std::set<std::string>& Uncounted() {
 /// Flags of what is written about a result.
 const std::set<std::string>& Outputs() {
   static const std::set<std::string> names = {
-      "full_report",  "keep_checkpoints", "pictures_every",
-      "warped_every", "warped_whole",     "write_masks"};
+      "freeze",       "full_report",  "keep_checkpoints", "pictures_every",
+      "warped_every", "warped_whole", "write_masks"};
   return names;
 }
 
@@ -200,6 +202,7 @@ RunIdentity IdentityFromFlags(const ImageFolderReader& reader,
   AddTerms(terms, &identity);
   identity.parts.merge(InputParts(reader));
   identity.parts["input.masks"] = MasksHash(cache);
+  identity.parts["input.trajectory"] = FileHash(FLAGS_trajectory);
   identity.parts["input.labels"] = FileHash(FLAGS_labels);
   identity.parts["input.from"] = FileHash(
       FLAGS_from.empty() ? "" : RunPaths(FLAGS_from).KeptCheckpoint(FLAGS_at));

@@ -18,6 +18,8 @@ DEFINE_string(preset, "splitfusion",
               "background_only.");
 DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
 DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
+DEFINE_string(trajectory, "",
+              "TUM text of known camera poses, which are not tracked.");
 DEFINE_bool(skip_bad_frames, false,
             "Leave out frames whose images are missing or broken.");
 
@@ -49,6 +51,7 @@ ReaderOptions ReaderOptionsFromFlags() {
   ReaderOptions options = FramesFromFlags();
   options.depth_scale = FLAGS_depth_scale;
   options.skip_bad_frames = FLAGS_skip_bad_frames;
+  options.trajectory = FLAGS_trajectory;
   options.depth = DepthFlags();
   if (!FLAGS_intrinsics.empty()) {
     options.camera = ParseIntrinsics(FLAGS_intrinsics);

@@ -59,6 +59,7 @@ DECLARE_string(format);
 DECLARE_string(masks);
 DECLARE_string(preset);
 DECLARE_string(sequence);
+DECLARE_string(trajectory);
 DECLARE_int32(threads);
 
 namespace splitfusion {
@@ -185,6 +186,7 @@ void CheckOutput() {
   CheckNotInOutput("sequence", FLAGS_sequence);
   CheckNotInOutput("masks", FLAGS_masks);
   CheckNotInOutput("from", FLAGS_from);
+  CheckNotInOutput("trajectory", FLAGS_trajectory);
 }
 
 /// The run itself, unless --output holds it.

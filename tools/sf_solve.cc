@@ -1,6 +1,7 @@
 // Solves frozen problems with many solvers, and compares these.
 
 #include <gflags/gflags.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/pending_folder.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/energy/gradient_check.h"
 #include "splitfusion/lib/energy/terms_library.h"
 #include "splitfusion/lib/experiment/solver_trials.h"
 #include "tool_main.h"
@@ -36,6 +38,8 @@ DEFINE_int32(max_iterations, 200, "Iterations of a solve at most.");
 DEFINE_double(max_seconds, 30, "No iteration of a solve begins later.");
 DEFINE_double(tolerance, 1e-12,
               "Converged when the cost changes by less, relative.");
+DEFINE_bool(check_gradients, false,
+            "Only compare derivatives with differences of the costs.");
 DEFINE_string(terms_library, "", "Libraries with terms of your own: FILE,...");
 
 namespace splitfusion {
@@ -48,6 +52,7 @@ constexpr char kUsage[] =
     "times, iterations and costs in DIR/solvers.csv, figures in DIR/*.svg.\n"
     "  sf_solve RUN/problems/*.h5 --output=DIR [--solvers=gn_pcg,ceres:cgnr]\n"
     "           [--starts=warm,cold] [--repeat=N]\n"
+    "  sf_solve RUN/problems/*.h5 --check_gradients\n"
     "See docs/solvers.md.\n";
 
 /// Largest deviation of the start of a replay from the run's, relative.
@@ -178,6 +183,15 @@ std::vector<TrialPlan> PlansFor(const NamedProblem& named,
   return plans;
 }
 
+/// Ceres' line searches warn of every restart.
+class QuietCeres {
+ public:
+  QuietCeres() { FLAGS_minloglevel = google::GLOG_ERROR; }
+  ~QuietCeres() { FLAGS_minloglevel = google::GLOG_INFO; }
+  QuietCeres(const QuietCeres&) = delete;
+  QuietCeres& operator=(const QuietCeres&) = delete;
+};
+
 std::vector<SolverTrial> RunTrials(const std::vector<NamedProblem>& problems,
                                    const std::vector<SolverSetting>& settings,
                                    const SolverRegistry& solvers) {
@@ -194,8 +208,11 @@ std::vector<SolverTrial> RunTrials(const std::vector<NamedProblem>& problems,
   const std::size_t total = plans.size() * settings.size();
   for (const auto& [named, plan] : plans) {
     for (const SolverSetting& setting : settings) {
-      trials.push_back(
-          RunTrial(named->name, named->problem, setting, solvers, plan));
+      {
+        const QuietCeres quiet;
+        trials.push_back(
+            RunTrial(named->name, named->problem, setting, solvers, plan));
+      }
       const auto done = static_cast<double>(trials.size());
       progress.Show(static_cast<int>(trials.size()), static_cast<int>(total),
                     "solves",
@@ -239,6 +256,29 @@ void PrintTable(const std::vector<SolverTrial>& trials) {
   }
 }
 
+/// Prints the largest deviation of every term. False if one is too large.
+bool CheckAllGradients(const std::vector<NamedProblem>& problems) {
+  constexpr double kRight = 1e-4;
+  std::map<std::string, GradientError> worst;
+  for (const NamedProblem& named : problems) {
+    for (const GradientError& error :
+         CheckGradients(named.problem.View(), named.problem.graph)) {
+      GradientError& sum = worst[error.term];
+      sum.relative = std::max(sum.relative, error.relative);
+      sum.failed += error.failed;
+    }
+  }
+  bool right = true;
+  for (const auto& [term, error] : worst) {
+    const bool own = error.relative <= kRight && error.failed == 0;
+    std::cout << term << ": derivatives deviate by " << error.relative
+              << (error.failed > 0 ? ", the cost is no number" : "")
+              << (own ? "" : ": expected at most 0.0001") << '\n';
+    right = right && own;
+  }
+  return right;
+}
+
 void WriteFigures(const std::vector<SolverTrial>& trials,
                   const fs::path& folder) {
   const auto write = [&](const std::string& name, const CurveChart& chart) {
@@ -256,7 +296,8 @@ void WriteFigures(const std::vector<SolverTrial>& trials,
 }
 
 int Run(const std::vector<std::string>& files) {
-  CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
+  CheckOption(!FLAGS_output.empty() || FLAGS_check_gradients, "output", "''",
+              "a folder to write");
   CheckOption(FLAGS_repeat >= 1, "repeat", FLAGS_repeat, ">= 1");
   StartsFromFlag();
   ThreadsFromFlag();
@@ -264,6 +305,10 @@ int Run(const std::vector<std::string>& files) {
   LoadTermsLibraries(FLAGS_terms_library, &terms);
   const SolverRegistry solvers = BuiltinSolvers();
   const std::vector<SolverSetting> settings = SettingsFromFlag(solvers);
+  if (FLAGS_check_gradients) {
+    return CheckAllGradients(ReadProblems(files, terms)) ? kExitDone
+                                                         : kExitFailure;
+  }
   PendingFolder folder(FLAGS_output, "sf_solve", FLAGS_overwrite);
   const std::vector<SolverTrial> trials =
       RunTrials(ReadProblems(files, terms), settings, solvers);

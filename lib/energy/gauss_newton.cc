@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <memory>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,6 +41,42 @@ std::vector<double> Moved(const std::vector<double>& twists,
     for (int d = 0; d < 6; ++d) moved[kTwistSize * i + d] += step[i][d];
   }
   return moved;
+}
+
+/// All there is to say of a solve, as Ceres' FullReport().
+std::string FullText(const SolverReport& report, const std::string& solver,
+                     const SymmetricBlockMatrix& matrix) {
+  std::ostringstream text;
+  const double nodes = matrix.size();
+  text << "Solver Summary (" << solver << ": Gauss-Newton on 6x6 blocks, "
+       << "Levenberg-Marquardt damping)\n\n"
+       << "Parameters          " << report.parameters << " (" << matrix.size()
+       << " nodes)\nResiduals           " << report.residuals
+       << "\nBlocks of J^T J      " << matrix.block_count()
+       << " of the upper triangle ("
+       << 200 * double(matrix.block_count()) / (nodes * (nodes + 1))
+       << " %)\n\nCost                initial, final\n";
+  for (const TermCost& term : report.terms) {
+    text << "  " << std::left << std::setw(18) << term.term << term.initial
+         << ", " << term.final << " (" << term.residual_vectors
+         << " residual vectors)\n";
+  }
+  text << "  " << std::setw(18) << "sum" << report.initial_cost << ", "
+       << report.final_cost
+       << "\n\niteration  cost  change  |gradient|  |step|  radius  "
+          "linear_iterations  seconds\n";
+  for (const SolverIteration& it : report.iterations) {
+    text << it.iteration << (it.accepted ? "  " : " (not taken)  ") << it.cost
+         << "  " << it.cost_change << "  " << it.gradient_max_norm << "  "
+         << it.step_norm << "  " << it.trust_region_radius << "  "
+         << it.linear_solver_iterations << "  " << it.seconds << '\n';
+  }
+  text << "\nSeconds             Jacobians " << report.jacobian_seconds
+       << ", assembly and linear solver " << report.linear_solver_seconds
+       << ", total " << report.total_seconds
+       << "\nTermination:        " << report.termination << " ("
+       << report.message << ")\n";
+  return text.str();
 }
 
 /// A minimisation under way, about the twists reached so far.
@@ -99,6 +138,7 @@ class Minimization {
   }
 
   bool Usable() const { return report_.usable; }
+  const SymmetricBlockMatrix& matrix() const { return matrix_; }
   const std::vector<double>& twists() const { return twists_; }
 
  private:
@@ -233,6 +273,10 @@ class GaussNewton : public Solver {
     SolverReport report = minimization.Report();
     if (minimization.Usable()) ComposeTwists(minimization.twists(), graph);
     report.total_seconds = total.Seconds();
+    if (options_.full_report) {
+      report.full_report =
+          FullText(report, options_.solver, minimization.matrix());
+    }
     return report;
   }
 

@@ -1,3 +1,4 @@
+#include "splitfusion/lib/base/number_text.h"
 #include "splitfusion/lib/energy/solver.h"
 
 namespace splitfusion {
@@ -78,6 +79,15 @@ void SolverOptions::DemandEffect(OptionList* list) const {
              preconditioner == unset.preconditioner,
          "preconditioner", unset.preconditioner,
          "solver gn_pcg or linear_solver cgnr");
+  const auto of_steps = [&](auto value, auto by_default,
+                            const std::string& name) {
+    demand(
+        !(ceres || gauss_newton) || conjugate_gradients || value == by_default,
+        name, NumberText(by_default), "solver gn_pcg or linear_solver cgnr");
+  };
+  of_steps(max_linear_solver_iterations, unset.max_linear_solver_iterations,
+           "linear_iterations");
+  of_steps(eta, unset.eta, "eta");
   demand(sparse_library == unset.sparse_library ||
              (ceres && linear_solver == "sparse_normal_cholesky"),
          "sparse_library", unset.sparse_library,

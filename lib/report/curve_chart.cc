@@ -11,8 +11,8 @@
 namespace splitfusion {
 namespace {
 
-constexpr double kLeft = 64, kTop = 32, kWidth = 440, kHeight = 300;
-constexpr double kBelow = 48, kLegend = 232, kLine = 17;  // Of text.
+constexpr double kLeft = 72, kTop = 32, kWidth = 440, kHeight = 300;
+constexpr double kBelow = 48, kLetter = 7, kLine = 17;  // Of text.
 /// Colours that also the colour-blind tell apart (Tol), dashed from the eighth
 /// on.
 constexpr std::array<const char*, 7> kColors = {"#4477aa", "#ee6677", "#228833",
@@ -179,7 +179,12 @@ std::string Legend(const CurveChart& chart) {
 
 std::string CurveChartSvg(const CurveChart& chart) {
   const double rows = static_cast<double>(chart.curves.size());
-  const double width = kLeft + kWidth + kLegend;
+  std::size_t letters = 0;
+  for (const Curve& curve : chart.curves) {
+    letters = std::max(letters, curve.name.size());
+  }
+  const double width =
+      kLeft + kWidth + 56 + kLetter * static_cast<double>(letters);
   const double height = kTop + std::max(kHeight, kLine * rows) + kBelow;
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
                     Number(width) + "\" height=\"" + Number(height) +

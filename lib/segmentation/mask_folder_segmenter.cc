@@ -83,18 +83,21 @@ cv::Mat ReadMask(const std::string& path, const Frame& frame) {
   return labels;
 }
 
-void AddInstance(const cv::Mat& mask, const Detection& detection,
+void AddInstance(const cv::Mat& mask, const Detection& detection, int identity,
                  std::vector<InstanceMask>* instances) {
   if (cv::countNonZero(mask) == 0) return;
   instances->push_back(
-      {mask, detection.class_name, detection.score, detection.box});
+      {mask, detection.class_name, detection.score, detection.box, identity});
 }
 
 }  // namespace
 
 MaskFolderSegmenter::MaskFolderSegmenter(const std::string& folder,
-                                         const std::string& unnamed_class)
-    : folder_(folder), unnamed_class_(unnamed_class) {
+                                         const std::string& unnamed_class,
+                                         bool given_identities)
+    : folder_(folder),
+      unnamed_class_(unnamed_class),
+      given_identities_(given_identities) {
   if (!fs::is_directory(folder)) {
     throw InputError(folder +
                      ": no such folder: expected masks, one png a "
@@ -192,12 +195,13 @@ std::vector<InstanceMask> MaskFolderSegmenter::Segment(const Frame& frame) {
           detection.mask.empty()
               ? cv::Mat(labels == detection.index)
               : cv::Mat(ReadMask((root / detection.mask).string(), frame) != 0);
-      AddInstance(mask, detection, &instances);
+      AddInstance(mask, detection, given_identities_ ? detection.index : 0,
+                  &instances);
     }
   }
   for (const std::string& name : InstanceFiles(stem)) {
     AddInstance(ReadMask((root / name).string(), frame) != 0,
-                {1, ClassOfFile(name, stem + "_", unnamed_class_), 1.0},
+                {1, ClassOfFile(name, stem + "_", unnamed_class_), 1.0}, 0,
                 &instances);
   }
   std::stable_sort(instances.begin(), instances.end(),

@@ -36,12 +36,14 @@ inline constexpr char kUnnamedRigidClass[] = "rigid_object";
 class MaskFolderSegmenter : public Segmenter {
  public:
   /// `unnamed_class`: class of masks without one; kUnnamedClass or
-  /// kUnnamedRigidClass, or any name of the label table.
+  /// kUnnamedRigidClass, or any name of the label table. `given_identities`:
+  /// the index of a detection, or the value of a pixel without a list, is the
+  /// instance's in all frames; files of single instances give none.
   ///
   /// @throw InputError if the folder is missing or holds no png.
-  explicit MaskFolderSegmenter(
-      const std::string& folder,
-      const std::string& unnamed_class = kUnnamedClass);
+  explicit MaskFolderSegmenter(const std::string& folder,
+                               const std::string& unnamed_class = kUnnamedClass,
+                               bool given_identities = false);
 
   /// @throw InputError on a broken file or a mask of another size than the
   ///     frame.
@@ -71,6 +73,7 @@ class MaskFolderSegmenter : public Segmenter {
 
   std::string folder_;
   std::string unnamed_class_;
+  bool given_identities_;
   /// Instance files (`STEM_CLASS.png`) by file name.
   std::vector<std::string> instance_files_;
   /// Content of detections.jsonl, if there is one.

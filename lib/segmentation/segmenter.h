@@ -9,7 +9,7 @@
 
 namespace splitfusion {
 
-/// One detected instance of one frame; carries no identity over time.
+/// One detected instance of one frame.
 struct InstanceMask {
   cv::Mat mask;            ///< HxW 8UC1, 255 inside, 0 outside.
   std::string class_name;  ///< COCO name, or "object" if the source has none.
@@ -17,6 +17,8 @@ struct InstanceMask {
   /// The detector's box, pixels (pixel (i, j) covers [i, i + 1) x [j, j + 1));
   /// empty if the source has none.
   cv::Rect2d box = {};
+  /// Of the instance through all frames, if that is known; 0 = not.
+  int identity = 0;
 };
 
 /// Source of instance masks (SplitFusion IV-A): files, or a network.

@@ -2,7 +2,10 @@
 #define SPLITFUSION_LIB_SEQUENCE_FRAME_H_
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
+
+#include "splitfusion/lib/geometry/rigid3.h"
 
 namespace splitfusion {
 
@@ -14,6 +17,8 @@ struct Frame {
   std::string color_stem = {};  ///< The same of the colour file.
   cv::Mat color;                ///< HxW 8UC3, BGR.
   cv::Mat depth;                ///< HxW 32FC1, metres, 0 = no measurement.
+  /// Where the camera is, if that is given, see ReaderOptions::trajectory.
+  std::optional<Rigid3d> world_from_camera = {};
 };
 
 }  // namespace splitfusion

@@ -10,6 +10,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/sequence/image_file.h"
+#include "splitfusion/lib/sequence/trajectory.h"
 
 namespace splitfusion {
 namespace {
@@ -87,6 +88,7 @@ ImageFolderReader::ImageFolderReader(const std::string& folder,
   indices_.resize(pairs_.size());
   std::iota(indices_.begin(), indices_.end(), options_.first_frame);
   calibration_ = ResolveCalibration(folder_, *format_, options_);
+  if (!options_.trajectory.empty()) FindPoses();
   if (!options_.skip_bad_frames) return;
   for (const BadFrame& bad : FindBadFrames()) {
     const auto at = std::find(indices_.begin(), indices_.end(), bad.index);
@@ -96,6 +98,23 @@ ImageFolderReader::ImageFolderReader(const std::string& folder,
   throw InputError(skipped_.front().reason + " (and none of the other " +
                    std::to_string(skipped_.size() - 1) +
                    " frames can be read)");
+}
+
+void ImageFolderReader::FindPoses() {
+  const Trajectory given = ReadTumTrajectory(options_.trajectory);
+  Rigid3d first_from_world;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const double time = pairs_[i].depth.timestamp;
+    const std::optional<Rigid3d> pose = PoseAt(given, time);
+    if (!pose) {
+      throw InputError(options_.trajectory + ": no pose within 0.02 s of " +
+                       std::to_string(time) + " s, frame " +
+                       std::to_string(indices_[i]) +
+                       ": expected one of every frame");
+    }
+    if (i == 0) first_from_world = pose->inverse();
+    poses_[indices_[i]] = first_from_world * *pose;
+  }
 }
 
 int ImageFolderReader::size() const {
@@ -173,6 +192,8 @@ Frame ImageFolderReader::Read(int i) const {
   Frame frame;
   frame.index = indices_[i];
   frame.timestamp = pair.depth.timestamp;
+  const auto pose = poses_.find(frame.index);
+  if (pose != poses_.end()) frame.world_from_camera = pose->second;
   frame.stem = depth_path.stem().string();
   frame.color_stem = color_path.stem().string();
   frame.color = format_->ReadColor(color_path.string());

@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_SEQUENCE_IMAGE_FOLDER_READER_H_
 #define SPLITFUSION_LIB_SEQUENCE_IMAGE_FOLDER_READER_H_
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <opencv2/core.hpp>
@@ -85,6 +86,8 @@ class ImageFolderReader {
   void CheckFiles(int i) const;
   Frame Read(int i) const;
   std::optional<Frame> ReadOrSkip();
+  /// @throw InputError if a frame has no pose in options_.trajectory.
+  void FindPoses();
   /// Leaves out the i-th frame.
   void Skip(int i, const std::string& reason);
 
@@ -94,6 +97,7 @@ class ImageFolderReader {
   Calibration calibration_;
   std::vector<AssociatedFiles> pairs_;  // Frames to be read.
   std::vector<int> indices_;            // Of pairs_, in the sequence.
+  std::map<int, Rigid3d> poses_;        // Given ones, by index.
   std::vector<BadFrame> skipped_;
   mutable std::mutex mutex_;  // Of the lists above.
   int next_ = 0;              // Into pairs_.

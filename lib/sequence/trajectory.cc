@@ -1,5 +1,7 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 
+#include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -28,6 +30,21 @@ Trajectory ReadTumTrajectory(const std::string& path) {
     trajectory.push_back(pose);
   }
   return trajectory;
+}
+
+std::optional<Rigid3d> PoseAt(const Trajectory& trajectory, double timestamp) {
+  constexpr double kApart = 0.02;  // Format: seconds.
+  const auto nearest =
+      std::min_element(trajectory.begin(), trajectory.end(),
+                       [timestamp](const TimedPose& a, const TimedPose& b) {
+                         return std::abs(a.timestamp - timestamp) <
+                                std::abs(b.timestamp - timestamp);
+                       });
+  if (nearest == trajectory.end() ||
+      std::abs(nearest->timestamp - timestamp) > kApart) {
+    return std::nullopt;
+  }
+  return nearest->world_from_camera;
 }
 
 void WriteTumHeader(std::ostream& out) {

@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_SEQUENCE_TRAJECTORY_H_
 #define SPLITFUSION_LIB_SEQUENCE_TRAJECTORY_H_
 
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -30,6 +31,10 @@ using Trajectory = std::vector<TimedPose>;
 /// @throw InputError on a missing file or a line that does not parse; names
 ///     file and line.
 Trajectory ReadTumTrajectory(const std::string& path);
+
+/// The pose nearest to a time stamp, at most 0.02 s away as in the tools of the
+/// TUM benchmark; none if there is no such pose.
+std::optional<Rigid3d> PoseAt(const Trajectory& trajectory, double timestamp);
 
 /// Writes the comment line that heads a TUM text file.
 void WriteTumHeader(std::ostream& out);

@@ -32,6 +32,7 @@ Appearance ComputeAppearance(const cv::Mat& color, const PointMap& points,
 }
 
 void AddView(const Appearance& view, Appearance* appearance) {
+  if (view.identity > 0) appearance->identity = view.identity;
   if (view.histogram.empty()) return;
   if (view.placed) {
     appearance->center = view.center;

@@ -16,11 +16,12 @@ struct Appearance {
   /// Mean point, world, metres.
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   bool placed = false;  ///< Whether any pixel had depth.
+  int identity = 0;     ///< If it is given, see InstanceMask; 0 = it is not.
 
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(histogram, pixels, center, placed);
+    (*archive)(histogram, pixels, center, placed, identity);
   }
 };
 

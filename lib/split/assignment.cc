@@ -118,6 +118,7 @@ class Comparison {
   }
 
   double GainOf(const Track& track) const {
+    if (Identity() > 0) return Identity() == track.appearance.identity;
     const double iou = OverlapWith(track.id).iou;
     const double overlap = IouRatio(iou, options_);
     // Place tells nothing of these: a chair beside a person is where he is.
@@ -135,6 +136,7 @@ class Comparison {
   }
 
   double GainOf(const TentativeTrack& track) const {
+    if (Identity() > 0) return Identity() == track.appearance.identity;
     return IouRatio(MaskIou(candidate_.mask, track.mask), options_) +
            AppearanceRatio(candidate_.appearance, track.appearance,
                            known_.frame - track.frame, options_);
@@ -142,6 +144,7 @@ class Comparison {
 
   /// The surface that it is a piece of; 0 if none.
   int Whole() const {
+    if (!candidate_.trusted || Identity() > 0) return 0;
     int whole = 0;
     double best = options_.min_contained;
     for (const auto& [id, common] : common_) {
@@ -155,6 +158,8 @@ class Comparison {
   }
 
  private:
+  int Identity() const { return candidate_.appearance.identity; }
+
   const Candidate& candidate_;
   const KnownSurfaces& known_;
   const std::map<int, int>& visible_;  // Predicted pixels by id.
@@ -195,6 +200,7 @@ Overlap ComputeOverlap(const cv::Mat_<uchar>& mask, int surface,
 
 int FindReturned(const Track& track, const TrackTable& tracks, int frame,
                  const AssignmentOptions& options) {
+  if (track.appearance.identity > 0) return 0;  // It is known who it is.
   int returned = 0;
   double best = 0;
   for (const auto& [id, other] : tracks) {
@@ -243,7 +249,7 @@ std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
     if (columns[i] >= surfaces) match.tentative = columns[i] - surfaces;
     if (columns[i] >= 0 && columns[i] < surfaces) {
       match.surface = ids[columns[i]];
-    } else if (candidates[i].trusted) {
+    } else {
       match.surface = comparisons[i].Whole();
       match.piece = match.surface > 0;
     }

@@ -63,7 +63,7 @@ struct KnownSurfaces {
 /// Inactive and occluded tracks take part: where nothing of one is projected,
 /// colour and place decide. What is left and lies inside of a surface, at its
 /// depth, is a piece of it. The class does not count: detectors change their
-/// mind about it.
+/// mind about it. Where identities are given these alone decide.
 std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
                                     const KnownSurfaces& known,
                                     const AssignmentOptions& options);

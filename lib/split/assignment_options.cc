@@ -25,9 +25,10 @@ void AssignmentOptions::List(OptionList* list) {
       "no greater.");
   list->Number("limit", &limit, Range::Above(0), "",
                "Largest log-likelihood ratio of one cue.");
-  list->Number("untrusted", &untrusted, Range::AtLeast(0), "",
-               "Ratio of the overlap that a detection needs which may not "
-               "become a surface.");
+  list->Number(
+      "untrusted", &untrusted, Range::AtLeast(0), "",
+      "Least log-likelihood ratio of the overlap for a detection that may "
+      "not become a surface (3: an IoU of 0.5).");
   list->Number("min_contained", &min_contained, Range::Share(), "",
                "Share of a detection inside of a surface that makes it a piece "
                "of it.");

@@ -15,7 +15,7 @@ void SplitOptions::List(OptionList* list) {
   list->Switch(
       "unknown_movers", &unknown_movers,
       "What stands where space was seen empty is no background, detected "
-      "or not, for as long as it stands there.");
+      "or not, for as long as it stands there; only where there are masks.");
   list->Text("merge_touching", &merge_touching,
              "CLASS+CLASS,...: instances of later classes that touch one of "
              "the first belong to it, as in person+teddy bear.")
@@ -28,10 +28,12 @@ void SplitOptions::List(OptionList* list) {
                "Smaller islands of a surface are no part of it.");
   list->Number("max_missed_frames", &max_missed_frames, Range::AtLeast(0),
                "frames", "A surface is followed so long without a detection.");
-  list->Number("birth_frames", &birth_frames, Range::AtLeast(1), "frames",
-               "A detection counts 1, a frame without one takes 1/2 back; the "
-               "sum that makes a surface, twice as much where background was "
-               "mapped for long, or of a rigid class.");
+  list->Number(
+      "birth_frames", &birth_frames, Range::AtLeast(1), "frames",
+      "A detection counts 1, a frame without one takes 1/2 back; the "
+      "sum that makes a surface, twice as much where background was "
+      "mapped for long, or, unless rigid_objects is separate, of a rigid "
+      "class.");
   list->Number("confident_score", &confident_score, Range::Share(), "",
                "From this score on a detection of the first frame makes a "
                "surface at once.");

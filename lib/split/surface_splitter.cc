@@ -71,6 +71,7 @@ Segment MakeSegment(const Candidate& candidate, const Match& match) {
 int FindBody(int index, const std::vector<Segment>& segments,
              const LabelImage& segment_labels, const PointMap& points,
              const TrackTable& tracks, double min_contact) {
+  if (segments[index].appearance.identity > 0) return 0;
   const cv::Mat_<uchar> pixels = SegmentPixels(index, segment_labels);
   int body = 0;
   double best = min_contact;
@@ -169,6 +170,7 @@ std::vector<Candidate> SurfaceSplitter::MakeCandidates(
          IsTrusted(detection, kind, options_), false,
          ComputeAppearance(input.frame.color, input.points, detection.mask,
                            input.prior.world_from_camera)});
+    candidates.back().appearance.identity = detection.identity;
   }
   return candidates;
 }
@@ -398,10 +400,11 @@ void SurfaceSplitter::Remember(const std::vector<Segment>& segments,
                                const SplitResult& result, const Input& input) {
   for (const Segment& segment : segments) {
     if (segment.surface == 0 || segment.mask.empty()) continue;
-    AddView(ComputeAppearance(input.frame.color, input.points,
-                              result.labels == segment.surface,
-                              input.prior.world_from_camera),
-            &tracks_.at(segment.surface).appearance);
+    Appearance view = ComputeAppearance(input.frame.color, input.points,
+                                        result.labels == segment.surface,
+                                        input.prior.world_from_camera);
+    view.identity = segment.appearance.identity;
+    AddView(view, &tracks_.at(segment.surface).appearance);
   }
   last_ = {result.labels.clone(),
            input.frame.depth.clone(),

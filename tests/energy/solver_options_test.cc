@@ -21,6 +21,7 @@ void ExpectRefused(const std::function<void(SolverOptions*)>& set,
 
 TEST(SolverOptions, DefaultsAndKnownNamesPass) {
   SolverOptions options;
+  options.solver = "ceres";
   for (const char* solver : {"auto", "dense_qr", "dense_normal_cholesky",
                              "sparse_normal_cholesky", "cgnr"}) {
     options.linear_solver = solver;
@@ -39,19 +40,57 @@ TEST(SolverOptions, UnknownNamesListTheKnownOnes) {
   ExpectRefused([](SolverOptions* o) { o->preconditioner = "schur_jacobi"; },
                 "preconditioner = schur_jacobi: expected auto, jacobi or "
                 "identity");
-  ExpectRefused([](SolverOptions* o) { o->trust_region = "newton"; },
-                "trust_region = newton: expected levenberg_marquardt or "
-                "dogleg");
+  ExpectRefused(
+      [](SolverOptions* o) { o->trust_region = "newton"; },
+      "trust_region = newton: expected levenberg_marquardt, dogleg or "
+      "subspace_dogleg");
 }
 
 TEST(SolverOptions, DoglegNeedsAFactorisation) {
   ExpectRefused(
       [](SolverOptions* o) {
+        o->solver = "ceres";
         o->trust_region = "dogleg";
         o->linear_solver = "cgnr";
       },
       "trust_region = dogleg: expected levenberg_marquardt with "
       "linear_solver cgnr");
+}
+
+TEST(SolverOptions, WhatHasNoEffectIsRefused) {
+  const std::string ceres = "as it has no effect but with solver ceres";
+  ExpectRefused([](SolverOptions* o) { o->linear_solver = "dense_qr"; },
+                "linear_solver = dense_qr: expected auto, " + ceres);
+  ExpectRefused(
+      [](SolverOptions* o) { o->trust_region = "dogleg"; },
+      "trust_region = dogleg: expected levenberg_marquardt, " + ceres);
+  ExpectRefused([](SolverOptions* o) { o->minimizer = "lbfgs"; },
+                "minimizer = lbfgs: expected trust_region, " + ceres);
+  ExpectRefused([](SolverOptions* o) { o->threads = 2; },
+                "solver_threads = 2: expected 1, " + ceres);
+  ExpectRefused(
+      [](SolverOptions* o) {
+        o->solver = "gn_cholesky";
+        o->preconditioner = "identity";
+      },
+      "preconditioner = identity: expected auto, as it has no effect but with "
+      "solver gn_pcg or linear_solver cgnr");
+  ExpectRefused(
+      [](SolverOptions* o) {
+        o->solver = "gn_cholesky";
+        o->eta = 0.5;
+      },
+      "eta = 0.5: expected 0.01, as it has no effect but with solver gn_pcg or "
+      "linear_solver cgnr");
+  ExpectRefused([](SolverOptions* o) { o->sparse_library = "eigen_sparse"; },
+                "sparse_library = eigen_sparse: expected suite_sparse");
+  ExpectRefused(
+      [](SolverOptions* o) {
+        o->solver = "ceres";
+        o->minimizer = "lbfgs";
+        o->linear_solver = "dense_qr";
+      },
+      "minimizer = lbfgs: expected trust_region");
 }
 
 TEST(SolverOptions, RefuseValuesOutOfRange) {

@@ -215,5 +215,18 @@ TEST(FindMaskFolder, PrefersDetections) {
   EXPECT_EQ(FindMaskFolder(folder / ""), folder / "masks_noisy");
 }
 
+TEST_F(MaskFolderSegmenterTest, IndicesAreIdentitiesIfThatIsSaid) {
+  WriteLabels();
+  for (const InstanceMask& instance : Segment()) {
+    EXPECT_EQ(instance.identity, 0);
+  }
+  MaskFolderSegmenter given(folder_ / "", kUnnamedClass,
+                            /*given_identities=*/true);
+  const std::vector<InstanceMask> instances = given.Segment(frame_);
+  ASSERT_EQ(instances.size(), 2u);
+  EXPECT_EQ(instances[0].identity, 1);
+  EXPECT_EQ(instances[1].identity, 3);
+}
+
 }  // namespace
 }  // namespace splitfusion

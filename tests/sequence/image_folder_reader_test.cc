@@ -220,5 +220,38 @@ TEST(ImageFolderReader, ReadsSharedSequences) {
   }
 }
 
+TEST_F(ImageFolderReaderTest, GivenPosesStartFromTheFirstCamera) {
+  // A quarter turn about y, then 2 m along the x of the camera.
+  const std::string turned = " 0 0.70710678118654752 0 0.70710678118654752\n";
+  const std::string path =
+      folder_.Write("given.txt", "0.49 1 2 3" + turned + "1.5 1 2 1" + turned +
+                                     "2.51 1 2 3" + turned);
+  ReaderOptions options;
+  options.trajectory = path;
+  ImageFolderReader reader(folder_ / "", options);
+  const Frame first = *reader.Next(), second = *reader.Next();
+  ASSERT_TRUE(first.world_from_camera && second.world_from_camera);
+  EXPECT_TRUE(first.world_from_camera->isApprox(Rigid3d::Identity(), 1e-12));
+  EXPECT_TRUE(second.world_from_camera->translation().isApprox(
+      Eigen::Vector3d(2, 0, 0), 1e-12));
+  EXPECT_TRUE(second.world_from_camera->linear().isIdentity(1e-12));
+  // The world begins where reading does.
+  options.first_frame = 1;
+  EXPECT_TRUE(ImageFolderReader(folder_ / "", options)
+                  .Next()
+                  ->world_from_camera->isApprox(Rigid3d::Identity(), 1e-12));
+  EXPECT_FALSE(ImageFolderReader(folder_ / "").Next()->world_from_camera);
+}
+
+TEST_F(ImageFolderReaderTest, EveryFrameNeedsAGivenPose) {
+  ReaderOptions options;
+  options.trajectory =
+      folder_.Write("given.txt", "0.5 0 0 0 0 0 0 1\n1.53 0 0 0 0 0 0 1\n");
+  ExpectInputError([&] { ImageFolderReader(folder_ / "", options); },
+                   "given.txt: no pose within 0.02 s of 1.500000 s, frame 1");
+  options.max_frames = 1;
+  EXPECT_NO_THROW(ImageFolderReader(folder_ / "", options));
+}
+
 }  // namespace
 }  // namespace splitfusion

@@ -185,6 +185,25 @@ TEST_F(AssignmentTest, TentativeTracksTakePart) {
   EXPECT_EQ(match.surface, 0);
 }
 
+TEST_F(AssignmentTest, GivenIdentitiesAloneDecide) {
+  tracks_.at(1).appearance.identity = 10;
+  tracks_.at(2).appearance.identity = 20;
+  Candidate left = Of(RectMask(kLeft)), right = Of(RectMask(kRight));
+  left.appearance.identity = 20;
+  right.appearance.identity = 10;
+  std::vector<Match> matches = Run({left, right});
+  EXPECT_EQ(matches[0].surface, 2);
+  EXPECT_EQ(matches[1].surface, 1);
+  // Somebody else, though he stands where one is, is neither him nor a piece.
+  left.appearance.identity = 30;
+  matches = Run({left});
+  EXPECT_EQ(matches[0].surface, 0);
+  EXPECT_EQ(matches[0].tentative, -1);
+  tentative_.Record(-1, 0, left.mask, left.appearance, true);
+  EXPECT_EQ(Run({left})[0].tentative, 0);
+  EXPECT_EQ(Run({right})[0].tentative, -1);
+}
+
 TEST_F(AssignmentTest, OverlapCountsWhatIsAtTheSurfacesDepth) {
   agreement_(cv::Rect(10, 20, 40, 20)) =
       static_cast<uchar>(DepthState::kOccluded);

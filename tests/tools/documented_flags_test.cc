@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ namespace fs = std::filesystem;
 using Flags = std::set<std::string>;
 
 constexpr const char* kPrograms[] = {"sf_batch", "sf_evaluate", "sf_montage",
-                                     "sf_run",   "sf_segment",  "sf_synth"};
+                                     "sf_run",   "sf_segment",  "sf_solve",
+                                     "sf_synth"};
 
 /// One flag in a page.
 struct Mention {
@@ -167,6 +169,26 @@ TEST(DocumentedFlags, AreThoseOfThePrograms) {
         << mention.flag;
   }
   EXPECT_GT(in_commands, 40);
+}
+
+TEST(TermsPage, NamesEveryTermAndKey) {
+  if (!HasProgram("sf_run")) GTEST_SKIP() << "sf_run is not built";
+  std::ifstream stream(RepositoryRoot() / "docs/terms.md");
+  const std::string page{std::istreambuf_iterator<char>(stream), {}};
+  std::istringstream help(RunProgram("sf_run", "--help_terms").output);
+  int named = 0;
+  for (std::string line; std::getline(help, line);) {
+    // Names stand alone at the margin, keys as "  KEY = VALUE".
+    const bool term = !line.empty() && line[0] != ' ';
+    const bool key = line.rfind("  ", 0) == 0 && line[2] != ' ' &&
+                     line.find(" = ") != std::string::npos;
+    if (!term && !key) continue;
+    const std::string name =
+        line.substr(term ? 0 : 2, line.find(' ', 2) - (term ? 0 : 2));
+    EXPECT_NE(page.find("`" + name + "`"), std::string::npos) << name;
+    ++named;
+  }
+  EXPECT_GE(named, 11);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/sequence/trajectory.h"
 #include "support/expect_refused.h"
 #include "support/program.h"
 #include "support/temporary_folder.h"
@@ -271,6 +272,30 @@ TEST_F(SfRun, TheSameImagesInAnotherFormatAreTheSameRun) {
       RunProgram("sf_evaluate", "--run=" + (folder_ / "scenes"));
   EXPECT_EQ(evaluated.exit_code, 0) << evaluated.errors;
   EXPECT_THAT(folder_.Read("scenes/evaluation.json"), HasSubstr("depth"));
+}
+
+TEST_F(SfRun, GivenPosesAreThoseOfTheCamera) {
+  Synthesize();
+  const std::string truth = folder_ / "sequence/gt/groundtruth.txt";
+  const ProgramResult result =
+      Run("given", "--trajectory=" + truth + " --pictures_every=0");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const Trajectory own = ReadTumTrajectory(folder_ / "given/trajectory.txt");
+  const Trajectory given = ReadTumTrajectory(truth);
+  ASSERT_EQ(own.size(), 4u);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Rigid3d expected =
+        given[0].world_from_camera.inverse() * given[i].world_from_camera;
+    EXPECT_TRUE(own[i].world_from_camera.isApprox(expected, 1e-6)) << i;
+  }
+  ExpectRefused("sf_run",
+                "--sequence=" + (folder_ / "sequence") + " --output=" +
+                    (folder_ / "none") + " --trajectory=none.txt",
+                "none.txt");
+  ExpectRefused("sf_run",
+                "--sequence=" + (folder_ / "sequence") + " --output=" +
+                    (folder_ / "none") + " --mask_identities=known",
+                "--mask_identities = known: expected given or tracked");
 }
 
 TEST_F(SfRun, WarnsOnceOfEveryGraphThatIsCoarserThanPlanned) {

@@ -1,0 +1,87 @@
+#include "splitfusion/lib/energy/problem_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include "splitfusion/cost_functions/builtin_terms.h"
+#include "support/sample_correspondences.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+
+namespace splitfusion {
+namespace {
+
+class ProblemRecorderTest : public ::testing::Test {
+ protected:
+  ProblemRecorderTest() {
+    const TriangleMesh mesh = PlateMesh(0.2, 0.1, 0.02, 1);
+    graph_ = CoverWithNodes(mesh, 0.04);
+    correspondences_ = PerfectAssociation(
+        mesh, graph_, [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  }
+
+  /// Solves as surface `id` with a recorded solver.
+  SolverReport Solve(int id, DeformationGraph* graph) const {
+    SurfaceProblem problem{energy_, correspondences_, camera_};
+    problem.surface = id;
+    return solvers_.Make("gn_pcg", SolverOptions())->Minimize(problem, graph);
+  }
+
+  std::vector<FrozenProblem> Recorded() const {
+    std::vector<FrozenProblem> problems;
+    recorder_->EndFrame(
+        [&](const FrozenProblem& problem) { problems.push_back(problem); },
+        [](const std::string& reason) { ADD_FAILURE() << reason; });
+    return problems;
+  }
+
+  const Energy energy_ = ParseEnergy("point_to_plane arap", BuiltinTerms());
+  const PinholeCamera camera_;
+  DeformationGraph graph_;
+  std::vector<Correspondence> correspondences_;
+  std::shared_ptr<ProblemRecorder> recorder_ =
+      std::make_shared<ProblemRecorder>(5);
+  SolverRegistry solvers_ = recorder_->Watch(BuiltinSolvers());
+};
+
+TEST_F(ProblemRecorderTest, SolversAreWhatTheyWere) {
+  EXPECT_EQ(solvers_.names(), BuiltinSolvers().names());
+  DeformationGraph watched = graph_, alone = graph_;
+  recorder_->BeginFrame(0);
+  const SolverReport report = Solve(1, &watched);
+  Minimize({energy_, correspondences_, camera_}, SolverOptions(), &alone);
+  EXPECT_GT(report.initial_cost, report.final_cost);
+  for (int i = 0; i < graph_.size(); ++i) {
+    EXPECT_EQ(watched.motions[i].translation, alone.motions[i].translation);
+  }
+}
+
+TEST_F(ProblemRecorderTest, KeepsTheLastSolveOfEverySurface) {
+  recorder_->BeginFrame(10);
+  DeformationGraph graph = graph_, other = graph_;
+  Solve(1, &graph);
+  const DeformationGraph second = graph;
+  const SolverReport report = Solve(1, &graph);
+  Solve(4, &other);
+  const std::vector<FrozenProblem> problems = Recorded();
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_EQ(problems[0].frame, 10);
+  EXPECT_EQ(problems[0].surface, 1);
+  EXPECT_EQ(problems[0].solver, "gn_pcg");
+  EXPECT_EQ(problems[0].start.cost, report.initial_cost);
+  EXPECT_EQ(problems[0].final_cost, report.final_cost);
+  EXPECT_EQ(problems[0].graph.motions[3].translation,
+            second.motions[3].translation);
+  EXPECT_EQ(problems[1].surface, 4);
+}
+
+TEST_F(ProblemRecorderTest, OtherFramesAreNotRecorded) {
+  DeformationGraph graph = graph_;
+  recorder_->BeginFrame(5);
+  Solve(1, &graph);
+  recorder_->BeginFrame(6);
+  Solve(1, &graph);
+  EXPECT_TRUE(Recorded().empty());
+}
+
+}  // namespace
+}  // namespace splitfusion
