@@ -11,8 +11,9 @@ PipelineOptions::PipelineOptions() {
 }
 
 void PipelineOptions::List(OptionList* list) {
-  list->Text("terms", &terms,
-             "The energy, Eq. 4: NAME(KEY=VALUE,...) ..., keys by --help_terms.")
+  list->Text(
+          "terms", &terms,
+          "The energy, Eq. 4: NAME(KEY=VALUE,...) ..., keys by --help_terms.")
       .common = true;
   list->Switch("split_scene", &split_scene,
                "Split the scene; otherwise one surface holds all of it.");
@@ -37,8 +38,7 @@ void PipelineOptions::List(OptionList* list) {
                "pixels", "A surface with fewer pixels in view is not tracked.");
   list->Number("min_exposure", &min_exposure, Range::Share(), "",
                "With a smaller visible fraction a surface is occluded: "
-               "predicted, not tracked; 0 = never.")
-      .common = true;
+               "predicted, not tracked; 0 = never.");
   list->Number("min_coverage", &min_coverage, Range::Share(), "",
                "A surface that was lost or hidden is found only if its paired "
                "model points are this share of its live pixels (edges apart); "

@@ -145,18 +145,16 @@ void TrackerOptions::List(OptionList* list) {
                "Largest angle of normals in the non-rigid stages.")
       .common = true;
   list->Number(
-          "lost_distance", &lost_distance, Range::AtLeast(0), "metres",
-          "In the first non-rigid stage live points without model are paired, "
-          "for live_to_model, with model points astray up to this far "
-          "(projective association only).")
-      .common = true;
+      "lost_distance", &lost_distance, Range::AtLeast(0), "metres",
+      "In the first non-rigid stage live points without model are paired, "
+      "for live_to_model, with model points astray up to this far "
+      "(projective association only).");
   list->Number("grazing_angle", &grazing_angle, {0, 90, true}, "degrees",
                "Between live normal and view ray; beyond, depth is not used.");
   list->Number(
-          "prior_anneal", &prior_anneal, Range::AtLeast(1), "",
-          "Over the non-rigid rounds of a frame, anneal falls from this to "
-          "1; temporal_arap has (anneal - 1) times its weight.")
-      .common = true;
+      "prior_anneal", &prior_anneal, Range::AtLeast(1), "",
+      "Over the non-rigid rounds of a frame, anneal falls from this to "
+      "1; temporal_arap has (anneal - 1) times its weight.");
   list->Number(
       "settled", &settled, Range::AtLeast(0), "",
       "A rigid stage ends when the relative change of the cost is smaller.");

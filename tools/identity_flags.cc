@@ -9,6 +9,7 @@
 
 #include "method_flags.h"
 #include "run_flags.h"
+#include "splitfusion/cost_functions/published_energies.h"
 #include "splitfusion/lib/base/content_cache.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
@@ -21,6 +22,7 @@
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 
 DEFINE_string(set, "", "KEY=VALUE; ...: any flags, or terms.arap.weight=4.");
+DEFINE_string(energy, "", "Terms of a paper, by name; see docs/terms.md.");
 DECLARE_string(class_names);
 DECLARE_int32(at);
 DECLARE_string(from);
@@ -175,14 +177,26 @@ void SetFlag(const std::string& key, const std::string& value) {
   }
 }
 
+/// Puts the terms of --energy in the place of the default ones. The options
+/// that repeat the run have it resolved, as those of --set.
+void ApplyEnergyFlag() {
+  if (FLAGS_energy.empty()) return;
+  const std::string terms = PublishedTerms(FLAGS_energy);
+  if (gflags::GetCommandLineFlagInfoOrDie("terms").is_default) {
+    MethodFlags().terms = terms;
+  }
+  FLAGS_energy.clear();
+}
+
 }  // namespace
 
 void ApplySetFlag(const TermRegistry& terms) {
-  if (FLAGS_set.empty()) return;
+  if (FLAGS_set.empty()) return ApplyEnergyFlag();
   const Settings settings = ParseSettings(FLAGS_set, "set");
   for (const auto& [key, value] : settings.entries()) {
     if (key.rfind("terms.", 0) != 0) SetFlag(key, value);
   }
+  ApplyEnergyFlag();
   Energy energy = ParseEnergy(MethodFlags().terms, terms);
   bool changed = false;
   for (const auto& [key, value] : settings.entries()) {

@@ -20,9 +20,8 @@ DEFINE_string(masks, "auto",
               "A folder, none, or auto (--model, or beside it).");
 DEFINE_string(mask_kind, "non_rigid",
               "Masks without classes are: non_rigid or rigid.");
-DEFINE_string(mask_identities, "tracked",
-              "given: the index of a mask is that of its instance in all "
-              "frames; or tracked.");
+DEFINE_string(mask_identities, "",
+              "given: the index of a mask is its instance's.");
 DEFINE_string(labels, "", "File with lines `class, rigid|non_rigid`.");
 DECLARE_string(class_names);
 DECLARE_string(sequence);
@@ -94,9 +93,8 @@ std::shared_ptr<Segmenter> MakeFolderSegmenter(const ImageFolderReader& reader,
                                                const PipelineOptions& options) {
   CheckOption(FLAGS_mask_kind == "rigid" || FLAGS_mask_kind == "non_rigid",
               "mask_kind", FLAGS_mask_kind, "rigid or non_rigid");
-  CheckOption(
-      FLAGS_mask_identities == "given" || FLAGS_mask_identities == "tracked",
-      "mask_identities", FLAGS_mask_identities, "given or tracked");
+  CheckOption(FLAGS_mask_identities == "given" || FLAGS_mask_identities.empty(),
+              "mask_identities", FLAGS_mask_identities, "given, or nothing");
   const std::string unnamed =
       FLAGS_mask_kind == "rigid" ? kUnnamedRigidClass : kUnnamedClass;
   auto segmenter = std::make_shared<MaskFolderSegmenter>(

@@ -13,13 +13,10 @@
 #include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/pipelines/presets.h"
 
-DEFINE_string(preset, "splitfusion",
-              "splitfusion, kinectfusion, dynamicfusion, cofusion or "
-              "background_only.");
+DEFINE_string(preset, "splitfusion", "Method, by name; see docs/presets.md.");
 DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
 DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
-DEFINE_string(trajectory, "",
-              "TUM text of known camera poses, which are not tracked.");
+DEFINE_string(trajectory, "", "TUM text of known camera poses.");
 DEFINE_bool(skip_bad_frames, false,
             "Leave out frames whose images are missing or broken.");
 

@@ -53,8 +53,7 @@ DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,
             "Warped meshes show also what was seen only later.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
-DEFINE_int32(freeze, 0,
-             "Problems of every n-th frame, for sf_solve; 0 = none.");
+DEFINE_int32(freeze, 0, "Problems of every n-th frame, for sf_solve.");
 DECLARE_string(format);
 DECLARE_string(masks);
 DECLARE_string(preset);

@@ -118,8 +118,8 @@ bool AreFinite(Hdf5Number number, const void* numbers, std::size_t count) {
 Hdf5Writer::Hdf5Writer(const std::string& path) : path_(path) {
   BeQuiet();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  // From 1.8 on what describes the data has checksums, too.
-  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  // From 1.10 on all that describes the data has checksums, too.
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.id(), false);
   file_ = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
@@ -157,6 +157,18 @@ void Hdf5Writer::WriteAttribute(const std::string& name, std::int64_t type,
   }
 }
 
+void Hdf5Writer::MakeGroup(const std::string& name) {
+  if (H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0) return;
+  const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties.id(), false);
+  const Handle group(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT,
+                                properties.id(), H5P_DEFAULT),
+                     H5Gclose);
+  if (!group.valid()) {
+    throw InputError(path_ + ": group " + name + " cannot be written");
+  }
+}
+
 void Hdf5Writer::Write(const std::string& path, Hdf5Number number,
                        const std::vector<std::uint64_t>& shape,
                        const void* numbers) {
@@ -165,10 +177,9 @@ void Hdf5Writer::Write(const std::string& path, Hdf5Number number,
       H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
       H5Sclose);
   const Handle properties = DatasetProperties(sizes);
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links.id(), 1);
+  MakeGroup(path.substr(0, path.find('/')));
   const Handle dataset(
-      H5Dcreate2(file_, path.c_str(), InFile(number), space.id(), links.id(),
+      H5Dcreate2(file_, path.c_str(), InFile(number), space.id(), H5P_DEFAULT,
                  properties.id(), H5P_DEFAULT),
       H5Dclose);
   if (!dataset.valid() || H5Dwrite(dataset.id(), InMemory(number), H5S_ALL,

@@ -119,6 +119,7 @@ class Hdf5Writer {
  private:
   void Write(const std::string& path, Hdf5Number number,
              const std::vector<std::uint64_t>& shape, const void* numbers);
+  void MakeGroup(const std::string& name);
   void WriteAttribute(const std::string& name, std::int64_t type,
                       const void* value);
 

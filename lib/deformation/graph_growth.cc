@@ -198,12 +198,10 @@ void GraphOptions::List(OptionList* list) {
   list->Number("neighbors_per_node", &neighbors_per_node, {1, 64}, "nodes",
                "Edges from each node.");
   list->Number("near_spacing", &near_spacing, Range::AtLeast(0.002), "metres",
-               "Node spacing of surfaces up to near_depth.")
-      .common = true;
+               "Node spacing of surfaces up to near_depth.");
   list->Number("far_spacing", &far_spacing, Range::AtLeast(0.002), "metres",
                "Node spacing of surfaces from far_depth on; at least "
-               "near_spacing.")
-      .common = true;
+               "near_spacing.");
   list->Demand(far_spacing >= near_spacing, "far_spacing",
                "metres >= near_spacing");
   list->Number("near_depth", &near_depth, Range::Above(0), "metres",
@@ -212,8 +210,7 @@ void GraphOptions::List(OptionList* list) {
                "Depth from which far_spacing applies; more than near_depth.");
   list->Demand(far_depth > near_depth, "far_depth", "metres > near_depth");
   list->Number("max_nodes", &max_nodes, Range::AtLeast(1), "nodes",
-               "Nodes of a graph at most; its spacing grows to keep to that.")
-      .common = true;
+               "Nodes of a graph at most; its spacing grows to keep to that.");
   list->Number(
       "growth_batch", &growth_batch, Range::Share(), "",
       "Nodes that come or go wait until they are this share of the graph's "

@@ -15,12 +15,10 @@ void SolverOptions::List(OptionList* list) {
       .common = true;
   list->Choice("preconditioner", &preconditioner,
                {"auto", "jacobi", "identity"},
-               "Of gn_pcg and cgnr; auto is jacobi.")
-      .common = true;
+               "Of gn_pcg and cgnr; auto is jacobi.");
   list->Choice("trust_region", &trust_region,
                {"levenberg_marquardt", "dogleg", "subspace_dogleg"},
-               "Of ceres: how a step is kept short.")
-      .common = true;
+               "Of ceres: how a step is kept short.");
   list->Choice("minimizer", &minimizer,
                {"trust_region", "lbfgs", "nonlinear_cg"},
                "Of ceres: steps of a linear solver in a trust region, or line "

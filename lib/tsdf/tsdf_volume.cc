@@ -128,8 +128,7 @@ void TsdfOptions::List(OptionList* list) {
                "Edge length of a voxel.")
       .common = true;
   list->Number("truncation", &truncation, Range::Above(0), "metres",
-               "Truncation distance, 2 to 50 voxels.")
-      .common = true;
+               "Truncation distance, 2 to 50 voxels.");
   list->Demand(truncation >= 2 * voxel_size && truncation <= 50 * voxel_size,
                "truncation",
                "2 to 50 voxels (" + NumberText(2 * voxel_size) + " to " +

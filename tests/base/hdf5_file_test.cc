@@ -178,7 +178,7 @@ TEST(Hdf5File, NoDamageGoesUnnoticed) {
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << (at % 8)));
     folder.Write("b.h5", damaged);
     try {
-      EXPECT_EQ(ReadItems(folder / "b.h5"), items) << "byte " << at;
+      EXPECT_TRUE(ReadItems(folder / "b.h5") == items) << "byte " << at;
     } catch (const InputError&) {
       ++noticed;
     }

@@ -174,7 +174,7 @@ TEST_F(FrozenProblemTest, RefusesContentThatCannotBe) {
   expect(bad, "terms/start_cost: expected one of each of 6 terms");
   bad = good;
   bad.camera.fx = 0;
-  expect(bad, "fx = 0");
+  expect(bad, "camera fx = 0");
   bad = good;
   bad.correspondences[0].target.x() = std::nanf("");
   expect(bad, "dataset correspondences/target has a number that is not finite");

@@ -37,7 +37,7 @@ SolverTrial Trial(const std::string& setting, const std::vector<double>& costs,
 
 TEST(SolverTrials, AreJudgedByTheLeastCostOfTheirStart) {
   std::vector<SolverTrial> trials = {
-      Trial("fast", {11, 1.001, 1}), Trial("slow", {11, 6, 1.1, 1.0001, 1}),
+      Trial("fast", {11, 1.001, 1}), Trial("slow", {11, 6, 1.05, 1.0001, 1}),
       Trial("elsewhere", {11, 3, 2}), Trial("cut", {11, 8}, "NO_CONVERGENCE"),
       Trial("broken", {11, 11}, "FAILURE")};
   trials[4].report.usable = false;
@@ -99,8 +99,9 @@ TEST(SolverTrials, GapsAreMeansOverProblems) {
   // 0.01 of the one, 1e-12 stands for 0 of the other.
   EXPECT_NEAR(chart.curves[0].points[1].second, std::sqrt(0.01 * 1e-12), 1e-12);
   EXPECT_NEAR(chart.curves[0].points[2].second, 1e-12, 1e-15);
-  for (const auto& [seconds, gap] : GapOverTime(trials).curves[0].points) {
-    if (seconds < 1) EXPECT_DOUBLE_EQ(gap, 1) << seconds;
+  const CurveChart over_time = GapOverTime(trials);
+  for (const auto& [seconds, gap] : over_time.curves[0].points) {
+    EXPECT_TRUE(seconds >= 1 || gap == 1) << seconds << " s: " << gap;
   }
 }
 

@@ -295,7 +295,7 @@ TEST_F(SfRun, GivenPosesAreThoseOfTheCamera) {
   ExpectRefused("sf_run",
                 "--sequence=" + (folder_ / "sequence") + " --output=" +
                     (folder_ / "none") + " --mask_identities=known",
-                "--mask_identities = known: expected given or tracked");
+                "--mask_identities = known: expected given, or nothing");
 }
 
 TEST_F(SfRun, WarnsOnceOfEveryGraphThatIsCoarserThanPlanned) {
@@ -328,6 +328,27 @@ TEST_F(SfRun, RefusesToOverwriteUnlessTold) {
   EXPECT_EQ(Run("other", "--max_frames=2").exit_code, 2);
   EXPECT_EQ(Run("other", "--max_frames=2 --overwrite").exit_code, 0);
   EXPECT_EQ(folder_.Read("other/mine.txt"), "do not touch");
+}
+
+TEST_F(SfRun, EnergiesOfPapersAreTermsThatFlagsOverrule) {
+  Synthesize("--frames=1");
+  const auto identity = [&](const std::string& flags) {
+    const ProgramResult result = Run("run", "--print_identity " + flags);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return nlohmann::json::parse(result.output)["identity"];
+  };
+  const std::string own = "point_to_plane arap(weight=3)";
+  EXPECT_EQ(identity("--energy=splitfusion"),
+            identity("--terms='point_to_plane(weight=1) arap(weight=8)'"));
+  EXPECT_NE(identity("--energy=splitfusion"), identity(""));
+  EXPECT_EQ(identity("--energy=volumedeform --terms='" + own + "'"),
+            identity("--terms='" + own + "'"));
+  EXPECT_EQ(identity("--energy=splitfusion --set=terms.arap.weight=3"),
+            identity("--terms='" + own + "'"));
+  EXPECT_EQ(identity("--set=energy=splitfusion"),
+            identity("--energy=splitfusion"));
+  ExpectRefused("sf_run", "--sequence=none --output=none --energy=best",
+                "--energy = best: expected splitfusion, ");
 }
 
 TEST_F(SfRun, PresetsAreDefaultsThatFlagsOverrule) {
