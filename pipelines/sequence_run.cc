@@ -209,9 +209,10 @@ void SequenceRun::WritePictures(const Frame& frame, int index) const {
 void SequenceRun::WriteProblems(int index) const {
   if (!options_.recorder) return;
   options_.recorder->EndFrame(
-      [&](const FrozenProblem& problem) {
-        WriteFrozenProblem(directory_->paths().Problem(index, problem.surface),
-                           problem);
+      [&](const FrozenProblem& problem, bool first) {
+        WriteFrozenProblem(
+            directory_->paths().Problem(index, problem.surface, first),
+            problem);
       },
       [&](const std::string& reason) {
         Warn("frame " + std::to_string(index) + ": not frozen: " + reason);

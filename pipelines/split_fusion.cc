@@ -59,8 +59,9 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
 void SplitFusion::PredictMotions(const std::optional<Rigid3d>& given) {
   if (surfaces_.empty()) return;
   const Rigid3d world_from_camera = WorldFromCamera();
-  const Rigid3d camera_motion = given ? given->inverse() * world_from_camera
-                                      : predictors_.at(0).velocity();
+  const Rigid3d camera_motion =
+      given ? (world_from_given_ * *given).inverse() * world_from_camera
+            : predictors_.at(0).velocity();
   const Rigid3d camera_from_world = camera_motion * world_from_camera.inverse();
   for (const auto& [id, surface] : surfaces_) {
     const Rigid3d motion = id == 0 ? camera_motion
@@ -375,6 +376,9 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
                                    : SurfaceKind::kRigid);
     // The canonical frame of the background is the world.
     if (surfaces_.empty()) return;
+    if (frame.world_from_camera) {
+      world_from_given_ = frame.world_from_camera->inverse();
+    }
   }
   if (!options_.model_objects) return;
   const std::map<int, int> pixels = PixelsOfSurfaces(live_);

@@ -77,7 +77,7 @@ class SplitFusion {
   void Serialize(Archive* archive);
 
  private:
-  /// `given`: known pose of the camera, world from camera.
+  /// `given`: known pose of the camera, see Frame.
   void PredictMotions(const std::optional<Rigid3d>& given);
   void Split(const PreparedFrame& prepared, FrameReport* report);
   /// Follows points of all surfaces, but of a background that is ray cast, from
@@ -139,6 +139,8 @@ class SplitFusion {
   ModelMap background_map_;
   /// By surface; of the background in the camera frame, of others in world.
   std::map<int, MotionPredictor> predictors_;
+  /// World, the first camera, from that of given poses.
+  Rigid3d world_from_given_ = Rigid3d::Identity();
   TrackState background_state_ = TrackState::kTracked;  ///< Of this frame.
 };
 

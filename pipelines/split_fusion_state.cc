@@ -35,7 +35,8 @@ template <typename Archive>
 void SplitFusion::Serialize(Archive* archive) {
   archive->Section("split fusion");
   ExpectSameCamera(archive, camera_);
-  (*archive)(splitter_, trajectory_, live_.labels, predictors_, point_tracks_);
+  (*archive)(splitter_, trajectory_, live_.labels, predictors_, point_tracks_,
+             world_from_given_);
   SerializeSurfaces(archive);
 }
 

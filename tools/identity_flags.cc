@@ -1,6 +1,7 @@
 #include "identity_flags.h"
 
 #include <gflags/gflags.h>
+#include <glog/logging.h>
 
 #include <filesystem>
 #include <set>
@@ -42,6 +43,7 @@ namespace fs = std::filesystem;
 const std::set<std::string>& Uncounted() {
   static const std::set<std::string> names = {"checkpoint_every",
                                               "class_names",
+                                              "energy",
                                               "keep_same",
                                               "labels",
                                               "masks",
@@ -184,6 +186,8 @@ void ApplyEnergyFlag() {
   const std::string terms = PublishedTerms(FLAGS_energy);
   if (gflags::GetCommandLineFlagInfoOrDie("terms").is_default) {
     MethodFlags().terms = terms;
+  } else {
+    LOG(WARNING) << "--energy=" << FLAGS_energy << ": --terms beats it";
   }
   FLAGS_energy.clear();
 }

@@ -93,8 +93,6 @@ std::shared_ptr<Segmenter> MakeFolderSegmenter(const ImageFolderReader& reader,
                                                const PipelineOptions& options) {
   CheckOption(FLAGS_mask_kind == "rigid" || FLAGS_mask_kind == "non_rigid",
               "mask_kind", FLAGS_mask_kind, "rigid or non_rigid");
-  CheckOption(FLAGS_mask_identities == "given" || FLAGS_mask_identities.empty(),
-              "mask_identities", FLAGS_mask_identities, "given, or nothing");
   const std::string unnamed =
       FLAGS_mask_kind == "rigid" ? kUnnamedRigidClass : kUnnamedClass;
   auto segmenter = std::make_shared<MaskFolderSegmenter>(
@@ -122,6 +120,8 @@ LabelTable LabelsFromFlags() {
 std::shared_ptr<Segmenter> SegmenterFromFlags(const ImageFolderReader& reader,
                                               const PipelineOptions& options,
                                               const std::string& run) {
+  CheckOption(FLAGS_mask_identities == "given" || FLAGS_mask_identities.empty(),
+              "mask_identities", FLAGS_mask_identities, "given, or nothing");
   if (HasNetworkFlags()) {
     std::shared_ptr<Segmenter> segmenter = MakeNetworkSegmenter(run);
     Classes known;

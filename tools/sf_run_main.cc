@@ -188,6 +188,14 @@ void CheckOutput() {
   CheckNotInOutput("trajectory", FLAGS_trajectory);
 }
 
+/// @throw OptionError on what cannot be had together.
+void CheckTogether(const ReaderOptions& reading,
+                   const PipelineOptions& options) {
+  CheckOption(reading.trajectory.empty() || !options.deform_background,
+              "trajectory", reading.trajectory,
+              "a background that does not deform");
+}
+
 /// The run itself, unless --output holds it.
 int Reconstruct(
     const ReaderOptions& reading, const PipelineOptions& options,
@@ -255,6 +263,7 @@ int RunSequence(Registries registries) {
   ReaderOptions reading = ReaderOptionsFromFlags();
   const PipelineOptions options = PipelineOptionsFromFlags(registries);
   CheckValues();
+  CheckTogether(reading, options);
   if (!FLAGS_print_identity) CheckOutput();
   // By its name, so that the options repeat the run and tell how to read again.
   FLAGS_format = reading.format =

@@ -8,12 +8,16 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <map>
+#include <set>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "interruption.h"
 #include "progress_line.h"
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/atomic_file.h"
@@ -36,6 +40,9 @@ DEFINE_string(starts, "warm",
 DEFINE_string(threads, "1", "Numbers of threads.");
 DEFINE_int32(max_iterations, 200, "Iterations of a solve at most.");
 DEFINE_double(max_seconds, 30, "No iteration of a solve begins later.");
+DEFINE_double(eta, 0.01, "Accuracy of a step's linear solve (gn_pcg, cgnr).");
+DEFINE_int32(linear_iterations, 100,
+             "Conjugate gradient iterations of a step at most.");
 DEFINE_double(tolerance, 1e-12,
               "Converged when the cost changes by less, relative.");
 DEFINE_bool(check_gradients, false,
@@ -64,18 +71,29 @@ struct NamedProblem {
   FrozenProblem problem;
 };
 
-std::vector<std::string> Words(const std::string& list) {
+/// @throw OptionError if something stands twice.
+void CheckDifferent(const std::string& flag,
+                    const std::vector<std::string>& words) {
+  std::set<std::string> seen;
+  for (const std::string& word : words) {
+    CheckOption(seen.insert(word).second, flag, word, "each once");
+  }
+}
+
+std::vector<std::string> Words(const std::string& flag,
+                               const std::string& list) {
   std::vector<std::string> words;
   std::istringstream stream(list);
   for (std::string word; std::getline(stream, word, ',');) {
     words.push_back(word);
   }
+  CheckDifferent(flag, words);
   return words;
 }
 
 std::vector<int> ThreadsFromFlag() {
   std::vector<int> threads;
-  for (const std::string& word : Words(FLAGS_threads)) {
+  for (const std::string& word : Words("threads", FLAGS_threads)) {
     const bool whole = !word.empty() && word.size() <= 4 &&
                        std::all_of(word.begin(), word.end(),
                                    [](char c) { return c >= '0' && c <= '9'; });
@@ -88,7 +106,7 @@ std::vector<int> ThreadsFromFlag() {
 }
 
 std::vector<std::string> StartsFromFlag() {
-  const std::vector<std::string> starts = Words(FLAGS_starts);
+  const std::vector<std::string> starts = Words("starts", FLAGS_starts);
   const bool known = std::all_of(
       starts.begin(), starts.end(),
       [](const std::string& s) { return s == "warm" || s == "cold"; });
@@ -104,14 +122,26 @@ std::vector<SolverSetting> SettingsFromFlag(const SolverRegistry& solvers) {
   base.max_seconds = FLAGS_max_seconds;
   CheckOption(FLAGS_max_iterations >= 1, "max_iterations", FLAGS_max_iterations,
               ">= 1");
+  CheckOption(FLAGS_eta > 0 && FLAGS_eta < 1, "eta", FLAGS_eta,
+              "0..1, not 0, not 1");
+  CheckOption(FLAGS_linear_iterations >= 1, "linear_iterations",
+              FLAGS_linear_iterations, ">= 1");
   CheckOption(FLAGS_max_seconds > 0, "max_seconds", FLAGS_max_seconds, "> 0");
   CheckOption(FLAGS_tolerance >= 0, "tolerance", FLAGS_tolerance, ">= 0");
   std::vector<SolverSetting> settings;
-  const std::vector<std::string> names =
-      FLAGS_solvers.empty() ? BuiltinSolverSettings() : Words(FLAGS_solvers);
+  std::vector<std::string> ways;
+  const std::vector<std::string> names = FLAGS_solvers.empty()
+                                             ? BuiltinSolverSettings()
+                                             : Words("solvers", FLAGS_solvers);
   for (const std::string& name : names) {
     settings.push_back(ParseSolverSetting(name, base, solvers));
+    SolverOptions& options = settings.back().options;
+    options.eta = FLAGS_eta;
+    options.max_linear_solver_iterations = FLAGS_linear_iterations;
+    ways.push_back(settings.back().solver + ":" +
+                   settings.back().preconditioner);
   }
+  CheckDifferent("solvers", ways);
   return settings;
 }
 
@@ -138,13 +168,17 @@ double Deviation(const FrozenProblem& problem) {
     off = std::max(off, (start.gradient[i] - own).cwiseAbs().maxCoeff());
   }
   const double cost = std::abs(start.cost - problem.start.cost);
-  return std::max(largest > 0 ? off / largest : off,
-                  problem.start.cost > 0 ? cost / problem.start.cost : cost);
+  const double deviation =
+      std::max(largest > 0 ? off / largest : off,
+               problem.start.cost > 0 ? cost / problem.start.cost : cost);
+  return std::isfinite(start.cost) ? deviation
+                                   : std::numeric_limits<double>::infinity();
 }
 
 std::vector<NamedProblem> ReadProblems(const std::vector<std::string>& files,
                                        const TermRegistry& terms) {
   CheckOption(!files.empty(), "problems", "none", "files of sf_run --freeze");
+  CheckDifferent("problems", files);
   const auto names = NamesOf(files);
   std::vector<NamedProblem> problems;
   double worst = 0;
@@ -208,6 +242,7 @@ std::vector<SolverTrial> RunTrials(const std::vector<NamedProblem>& problems,
   const std::size_t total = plans.size() * settings.size();
   for (const auto& [named, plan] : plans) {
     for (const SolverSetting& setting : settings) {
+      if (Interrupted()) break;
       {
         const QuietCeres quiet;
         trials.push_back(
@@ -224,6 +259,8 @@ std::vector<SolverTrial> RunTrials(const std::vector<NamedProblem>& problems,
                 << message << '\n';
     }
   }
+  CheckOption(total > 0, "starts", FLAGS_starts,
+              "warm, as no problem has a frame before");
   JudgeTrials(&trials);
   return trials;
 }
@@ -266,13 +303,15 @@ bool CheckAllGradients(const std::vector<NamedProblem>& problems) {
       GradientError& sum = worst[error.term];
       sum.relative = std::max(sum.relative, error.relative);
       sum.failed += error.failed;
+      sum.residuals += error.residuals;
     }
   }
   bool right = true;
   for (const auto& [term, error] : worst) {
     const bool own = error.relative <= kRight && error.failed == 0;
     std::cout << term << ": derivatives deviate by " << error.relative
-              << (error.failed > 0 ? ", the cost is no number" : "")
+              << (error.failed > 0 ? ", cost or slope is no number" : "")
+              << (error.residuals == 0 ? " (no residuals: not checked)" : "")
               << (own ? "" : ": expected at most 0.0001") << '\n';
     right = right && own;
   }
@@ -310,12 +349,17 @@ int Run(const std::vector<std::string>& files) {
                                                          : kExitFailure;
   }
   PendingFolder folder(FLAGS_output, "sf_solve", FLAGS_overwrite);
+  CatchInterruption();
   const std::vector<SolverTrial> trials =
       RunTrials(ReadProblems(files, terms), settings, solvers);
   WriteCsv((folder.path() / "solvers.csv").string(), TrialsTable(trials));
   WriteFigures(trials, folder.path());
   folder.Commit();
   PrintTable(trials);
+  if (Interrupted()) {
+    throw std::runtime_error("interrupted; " + FLAGS_output +
+                             " has what was solved before");
+  }
   return kExitDone;
 }
 

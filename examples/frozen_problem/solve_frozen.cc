@@ -69,7 +69,10 @@ class File {
   std::string Text(const std::string& name) const {
     const hid_t attribute = H5Aopen(id_, name.c_str(), H5P_DEFAULT);
     if (attribute < 0) throw std::runtime_error(name + ": missing");
-    const hid_t type = H5Aget_type(attribute);
+    const hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    const bool one = H5Sget_simple_extent_npoints(space) == 1;
+    H5Sclose(space);
+    if (!one) throw std::runtime_error(name + ": not a text");
     std::string text(H5Tget_size(type), '\0');
     H5Aread(attribute, type, text.data());
     H5Tclose(type);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostDimensions = 3;  // Format.
 constexpr unsigned kDeflate = 4;    // Format: level of compression.
-/// A byte of the file stands for no more than so many; what says so is damaged.
+/// A byte of the file stands for no more than so many.
 constexpr std::uint64_t kMostDeflated = 1100;  // Format.
 
 /// An identifier of HDF5, closed at the end.
@@ -36,8 +36,12 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// HDF5 would print its stack of errors.
-void BeQuiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// HDF5 would print its stack of errors, and at the end of the program crash
+/// over a file that a full disk did not let it close. Before all other calls.
+void BeQuiet() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 hid_t InMemory(Hdf5Number number) {
   switch (number) {
@@ -123,7 +127,13 @@ Hdf5Writer::Hdf5Writer(const std::string& path) : path_(path) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.id(), false);
   file_ = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
-  if (file_ < 0) throw InputError(path + ": cannot be written");
+  if (file_ < 0) Fail();
+}
+
+void Hdf5Writer::Fail() const {
+  throw InputError(path_ +
+                   ": cannot be written (folder missing, not writable or disk "
+                   "full)");
 }
 
 Hdf5Writer::~Hdf5Writer() {
@@ -153,7 +163,7 @@ void Hdf5Writer::WriteAttribute(const std::string& name, std::int64_t type,
       H5Awrite(attribute.id(),
                H5Tget_class(type) == H5T_STRING ? type : native.id(),
                value) < 0) {
-    throw InputError(path_ + ": attribute " + name + " cannot be written");
+    Fail();
   }
 }
 
@@ -165,7 +175,7 @@ void Hdf5Writer::MakeGroup(const std::string& name) {
                                 properties.id(), H5P_DEFAULT),
                      H5Gclose);
   if (!group.valid()) {
-    throw InputError(path_ + ": group " + name + " cannot be written");
+    Fail();
   }
 }
 
@@ -184,14 +194,12 @@ void Hdf5Writer::Write(const std::string& path, Hdf5Number number,
       H5Dclose);
   if (!dataset.valid() || H5Dwrite(dataset.id(), InMemory(number), H5S_ALL,
                                    H5S_ALL, H5P_DEFAULT, numbers) < 0) {
-    throw InputError(path_ + ": dataset " + path + " cannot be written");
+    Fail();
   }
 }
 
 void Hdf5Writer::Close() {
-  if (H5Fclose(std::exchange(file_, -1)) < 0) {
-    throw InputError(path_ + ": cannot be written");
-  }
+  if (H5Fclose(std::exchange(file_, -1)) < 0) Fail();
 }
 
 Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
@@ -199,7 +207,6 @@ Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
   if (!std::filesystem::is_regular_file(path)) {
     throw InputError(path + ": not found; expected an HDF5 file");
   }
-  bytes_ = std::filesystem::file_size(path);
   file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0) Fail("expected an HDF5 file");
 }
@@ -212,13 +219,15 @@ void Hdf5Reader::Attribute(const std::string& name, std::string* text) {
   const Handle attribute(H5Aopen(file_, name.c_str(), H5P_DEFAULT), H5Aclose);
   const Handle type(attribute.valid() ? H5Aget_type(attribute.id()) : -1,
                     H5Tclose);
+  const Handle space(attribute.valid() ? H5Aget_space(attribute.id()) : -1,
+                     H5Sclose);
   if (!type.valid() || H5Tget_class(type.id()) != H5T_STRING ||
-      H5Tis_variable_str(type.id()) > 0) {
+      H5Tis_variable_str(type.id()) > 0 ||
+      H5Sget_simple_extent_npoints(space.id()) != 1) {
     Fail("expected an attribute " + name + ", a text of fixed length");
   }
   text->assign(H5Tget_size(type.id()), '\0');
-  const Handle memory = TextType(text->size());
-  if (H5Aread(attribute.id(), memory.id(), text->data()) < 0) {
+  if (H5Aread(attribute.id(), type.id(), text->data()) < 0) {
     Fail("attribute " + name + " cannot be read");
   }
   text->erase(std::find(text->begin(), text->end(), '\0'), text->end());
@@ -269,7 +278,10 @@ std::uint64_t Hdf5Reader::CheckedRows(
     Fail("dataset " + path + " is " + ShapeText({shape.begin(), shape.end()}) +
          ": expected " + ShapeText(wanted) + " of " + NameOf(number));
   }
-  if (expected / kMostDeflated > bytes_) Fail(path + " is damaged");
+  // What was never written takes no room.
+  if (expected > kMostDeflated * H5Dget_storage_size(dataset.id())) {
+    Fail("dataset " + path + " is damaged");
+  }
   return expected;
 }
 

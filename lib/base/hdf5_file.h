@@ -60,11 +60,11 @@ struct Hdf5Item<Eigen::Matrix<T, R, C>> {
 
 }  // namespace internal
 
-/// An HDF5 file in the making: attributes of the root, and datasets that are
-/// named by paths, GROUP/NAME; those of a group have equally many rows. Written
-/// with a checksum of every dataset and of all that describes it, without
-/// times: the same content has the same bytes. One function can serve this and
-/// Hdf5Reader, see kReads.
+/// An HDF5 file in the making: attributes of the root, and datasets
+/// that are named by paths, GROUP/NAME; those of a group have equally many
+/// rows. Written with a checksum of every dataset and of all that describes it,
+/// without times: the same content has the same bytes. One function can serve
+/// this and Hdf5Reader, see kReads.
 class Hdf5Writer {
  public:
   /// Tells functions for both directions which one is asked for.
@@ -122,6 +122,8 @@ class Hdf5Writer {
   void MakeGroup(const std::string& name);
   void WriteAttribute(const std::string& name, std::int64_t type,
                       const void* value);
+
+  [[noreturn]] void Fail() const;
 
   std::string path_;
   std::int64_t file_ = -1;  // HDF5's identifiers are 64-bit numbers.
@@ -192,7 +194,6 @@ class Hdf5Reader {
 
   std::string path_;
   std::int64_t file_ = -1;
-  std::uintmax_t bytes_ = 0;                   // Of the file.
   std::map<std::string, std::uint64_t> rows_;  // By group.
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iomanip>
 #include <memory>
+#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -202,6 +203,8 @@ class CeresSolver : public Solver {
     CeresProblem problem(input, *graph);
     report.residuals = problem.residual_count();
     const std::vector<double> initial = problem.TermCosts();
+    const double initial_cost =
+        std::accumulate(initial.begin(), initial.end(), 0.0);
     ceres::Solver::Options options = CeresOptions(options_, *graph);
     const double needed = IsDense(options.linear_solver_type)
                               ? DenseBytes(*problem.problem())
@@ -209,6 +212,7 @@ class CeresSolver : public Solver {
     const auto free = static_cast<double>(AvailableMemoryBytes());
     if (needed > free) {
       report.termination = "FAILURE";
+      report.initial_cost = initial_cost;
       report.message = options_.linear_solver + " needs " + Gigabytes(needed) +
                        " of memory: " + Gigabytes(free) + " are free";
       return report;
@@ -219,6 +223,8 @@ class CeresSolver : public Solver {
     ceres::Solver::Summary summary;
     ceres::Solve(options, problem.problem(), &summary);
     FillReport(summary, options_.full_report, &report);
+    // Ceres has -1 where it could not evaluate.
+    if (!report.usable) report.initial_cost = initial_cost;
     report.terms = problem.Terms(initial, problem.TermCosts());
     if (report.usable) ComposeTwists(problem.twists(), graph);
     report.total_seconds = stopwatch.Seconds();

@@ -58,8 +58,8 @@ class EnergyTerm {
 
   /// Adds the term's own parameters: names, ranges, units and meaning of its
   /// fields, whose values in a new term are the defaults. They become keys of
-  /// the term in --terms and --set, beside weight, loss and scale. Called often:
-  /// it lists, and changes nothing.
+  /// the term in --terms and --set, beside weight, loss and scale. Called
+  /// often: it lists, and changes nothing.
   virtual void List(OptionList* /*list*/) {}
 
   /// Adds the residuals of all its points, nodes or edges.

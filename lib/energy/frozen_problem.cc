@@ -30,8 +30,12 @@ void CheckComplete(const FrozenProblem& problem,
   const std::vector<double> without =
       EvaluateStart(problem.View(), problem.graph).terms;
   for (std::size_t i = 0; i < without.size(); ++i) {
+    const std::string& name = problem.energy[i].options.name;
+    if (!std::isfinite(with_live[i])) {
+      throw InputError("term '" + name + "': its cost is not finite");
+    }
     if (AreEqual(without[i], with_live[i])) continue;
-    throw InputError("term '" + problem.energy[i].options.name +
+    throw InputError("term '" + name +
                      "' looks at the live frame: expected terms that do not, "
                      "as it is not kept in a frozen problem");
   }
@@ -195,6 +199,15 @@ class Check {
     }
   }
 
+  void Numbers() const {
+    if (problem_.frame < 0 || problem_.surface < 0) {
+      file_.Fail("frame or surface: expected 0 or more");
+    }
+    if (problem_.anneal < 1 || problem_.initial_radius < 0) {
+      file_.Fail("anneal: expected 1 or more, initial_radius 0 or more");
+    }
+  }
+
   void Sizes() const {
     if (problem_.graph.size() == 0) file_.Fail("graph: expected a node");
     if (problem_.before &&
@@ -211,6 +224,9 @@ class Check {
   void Skinning(const std::string& group,
                 const std::vector<Item>& items) const {
     for (const Item& item : items) {
+      if (item.weight < 0) {
+        file_.Fail(group + "/confidence: expected 0 or more");
+      }
       const splitfusion::Skinning& skinning = item.model.skinning;
       const bool counted =
           skinning.count >= 1 && skinning.count <= kMaxSkinningNodes;
@@ -240,6 +256,7 @@ class Check {
 void CheckContent(const Hdf5Reader& file, const FrozenProblem& problem,
                   const std::vector<Edge>& edges) {
   const Check check(file, problem);
+  check.Numbers();
   check.Sizes();
   check.Edges(edges);
   check.Skinning("correspondences", problem.correspondences);

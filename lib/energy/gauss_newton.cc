@@ -206,6 +206,7 @@ class Minimization {
     iteration.gradient_max_norm = std::nan("");
     const Stopwatch watch;
     const LinearSolution solution = SolveStep();
+    solved_ = solution.usable;
     report_.linear_solver_seconds += watch.Seconds();
     iteration.linear_solver_iterations = solution.iterations;
     iteration.linear_residual = solution.relative_residual;
@@ -239,7 +240,7 @@ class Minimization {
   }
 
   bool HasSettled(const SolverIteration& iteration) const {
-    return iteration.step_norm <= options_.parameter_tolerance ||
+    return (solved_ && iteration.step_norm <= options_.parameter_tolerance) ||
            (iteration.accepted &&
             iteration.cost_change <=
                 options_.function_tolerance * report_.final_cost);
@@ -252,6 +253,7 @@ class Minimization {
   std::vector<Vector6> diagonal_;  // Of J^T J, without damping.
   std::vector<double> twists_;
   double radius_;
+  bool solved_ = false;      // Whether the last step is that of its system.
   bool linearized_ = false;  // Whether matrix_ and gradient_ are at twists_.
   std::vector<Vector6> gradient_;
   std::vector<Vector6> step_;

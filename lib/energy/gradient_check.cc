@@ -11,10 +11,11 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kDirections = 8;      // Speed.
-constexpr double kStep = 1e-4;      // Maths: radians and metres.
-constexpr double kShrinking = 2;    // Maths: of the step, Ridders' method.
-constexpr int kExtrapolations = 6;  // Maths.
+constexpr int kDirections = 8;        // Speed.
+constexpr double kStep = 1e-4;        // Maths: radians and metres.
+constexpr double kShrinking = 2;      // Maths: of the step, Ridders' method.
+constexpr double kLeastSlope = 1e-6;  // Maths: smaller ones are rounding.
+constexpr int kExtrapolations = 6;    // Maths.
 
 using Twists = std::vector<double>;
 
@@ -58,6 +59,7 @@ class TermSlopes {
   }
 
   bool finite() const { return finite_; }
+  int residuals() const { return CountResiduals(blocks_.terms()); }
 
   double Derived(const Twists& direction) const {
     double slope = 0;
@@ -106,14 +108,15 @@ std::vector<GradientError> CheckGradients(const SurfaceProblem& problem,
           RandomDirection(kTwistSize * graph.positions.size(), &random);
       const double derived = slopes.Derived(direction);
       const double measured = slopes.Measured(direction);
-      if (!slopes.finite() || !std::isfinite(measured)) {
+      if (!slopes.finite() || !std::isfinite(measured + derived)) {
         ++error.failed;
         continue;
       }
       largest = std::max(largest, std::abs(measured));
       off = std::max(off, std::abs(derived - measured));
     }
-    error.relative = largest > 0 ? off / largest : off;
+    error.relative = off / std::max(largest, kLeastSlope);
+    error.residuals = slopes.residuals();
     errors.push_back(error);
   }
   return errors;

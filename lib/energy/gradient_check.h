@@ -12,7 +12,8 @@ namespace splitfusion {
 struct GradientError {
   std::string term;     ///< Registered name.
   double relative = 0;  ///< Largest deviation, over the largest slope.
-  int failed = 0;       ///< Directions in which the cost was not finite.
+  int failed = 0;       ///< Directions in which cost or slope is not finite.
+  int residuals = 0;    ///< Scalar residuals; of none nothing is known.
 };
 
 /// Compares the slope of every term's cost along random directions of all

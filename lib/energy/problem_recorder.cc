@@ -56,19 +56,22 @@ void ProblemRecorder::BeginFrame(int frame) {
   frame_ = frame;
   records_ = frame % every_ == 0;
   problems_.clear();
+  first_.clear();
   refused_.clear();
 }
 
 void ProblemRecorder::EndFrame(
-    const std::function<void(const FrozenProblem&)>& write,
+    const Write& write,
     const std::function<void(const std::string&)>& refused) {
-  for (const auto& [surface, problem] : problems_) write(problem);
+  for (const auto& [surface, problem] : first_) write(problem, true);
+  for (const auto& [surface, problem] : problems_) write(problem, false);
   for (const auto& [surface, reason] : refused_) refused(reason);
 }
 
 void ProblemRecorder::Keep(FrozenProblem problem) {
   problem.frame = frame_;
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (!problem.graph.rigid()) first_.emplace(problem.surface, problem);
   problems_.insert_or_assign(problem.surface, std::move(problem));
 }
 

@@ -13,7 +13,9 @@
 namespace splitfusion {
 
 /// Keeps the problems that solvers get, to be written for sf_solve: of every
-/// surface the last one of a frame. Solvers do what they did without it.
+/// surface the last one of a frame, and the first one of more than one node, in
+/// which priors are annealed and lost parts looked for. Solvers do what they
+/// did without it.
 class ProblemRecorder : public std::enable_shared_from_this<ProblemRecorder> {
  public:
   /// `every`: frames, >= 1, of which one is recorded.
@@ -25,9 +27,12 @@ class ProblemRecorder : public std::enable_shared_from_this<ProblemRecorder> {
   /// Says which frame is next; forgets what is kept.
   void BeginFrame(int frame);
 
+  /// Receives a problem; `first`: not the last one of its surface.
+  using Write = std::function<void(const FrozenProblem&, bool first)>;
+
   /// Hands over what was kept since BeginFrame(), by id of the surface. Of what
   /// cannot be frozen `refused` receives why, one line.
-  void EndFrame(const std::function<void(const FrozenProblem&)>& write,
+  void EndFrame(const Write& write,
                 const std::function<void(const std::string&)>& refused);
 
  private:
@@ -40,7 +45,8 @@ class ProblemRecorder : public std::enable_shared_from_this<ProblemRecorder> {
   int frame_ = 0;
   bool records_ = false;
   std::mutex mutex_;                       // Guards all below.
-  std::map<int, FrozenProblem> problems_;  // By surface.
+  std::map<int, FrozenProblem> problems_;  // By surface: last ones,
+  std::map<int, FrozenProblem> first_;     // and first ones.
   std::map<int, std::string> refused_;     // By surface.
 };
 

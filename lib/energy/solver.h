@@ -51,8 +51,8 @@ struct SolverOptions {
   /// are followed too slowly.
   double initial_radius = 1e3;
   bool full_report = false;  ///< Keep a text of all there is to say.
-  /// No iteration begins later, seconds; no flag of a run, whose result must not
-  /// depend on the clock.
+  /// No iteration begins later, seconds; no flag of a run, whose result must
+  /// not depend on the clock.
   double max_seconds = 1e9;
 
   /// Names, ranges and meaning of all fields.

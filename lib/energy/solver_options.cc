@@ -87,9 +87,14 @@ void SolverOptions::DemandEffect(OptionList* list) const {
            "linear_iterations");
   of_steps(eta, unset.eta, "eta");
   demand(sparse_library == unset.sparse_library ||
-             (ceres && linear_solver == "sparse_normal_cholesky"),
+             (ceres && !line_search &&
+              (linear_solver == "sparse_normal_cholesky" ||
+               linear_solver == unset.linear_solver)),
          "sparse_library", unset.sparse_library,
-         "linear_solver sparse_normal_cholesky");
+         "linear_solver sparse_normal_cholesky or auto");
+  demand(!line_search || initial_radius == unset.initial_radius,
+         "initial_radius", NumberText(unset.initial_radius),
+         "minimizer trust_region");
   demand(!gauss_newton || threads == unset.threads, "solver_threads",
          std::to_string(unset.threads), "solver ceres");
   list->Demand(trust_region == unset.trust_region || linear_solver != "cgnr",

@@ -1,6 +1,7 @@
 #include "splitfusion/lib/experiment/solver_setting.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include "splitfusion/lib/base/error.h"
@@ -38,20 +39,23 @@ SolverSetting ParseSolverSetting(const std::string& text,
   std::getline(words, setting.options.solver, ':');
   solvers.Check(setting.options.solver);
   setting.solver = setting.options.solver;
+  std::set<std::string> chosen;
   for (std::string word; std::getline(words, word, ':');) {
     Option* choice = FindChoice(word, &options);
     CheckOption(
         choice != nullptr, "solvers", text,
         "SOLVER:CHOICE:..., but '" + word + "' is no choice of a solver");
+    CheckOption(chosen.insert(choice->name).second, "solvers", text,
+                "one " + choice->name + " for each solver");
     choice->Set(word);
     if (choice->name != "preconditioner") setting.solver += ":" + word;
   }
   setting.options.Check();
   solvers.Make(setting.options.solver, setting.options);
-  const std::string& chosen = setting.options.preconditioner;
+  const std::string& used = setting.options.preconditioner;
   setting.preconditioner = !TakesPreconditioner(setting.options) ? "none"
-                           : chosen == "auto"                    ? "jacobi"
-                                                                 : chosen;
+                           : used == "auto"                      ? "jacobi"
+                                                                 : used;
   return setting;
 }
 

@@ -63,8 +63,10 @@ double SecondsTo(double gap, const SolverReport& report, double best) {
 std::string StatusOf(const SolverReport& report, double best) {
   if (!report.usable) return "failed";
   if (report.termination != "CONVERGENCE") return "no_convergence";
-  return report.final_cost > best * (1 + kOtherMinimum) ? "other_minimum"
-                                                        : "converged";
+  const bool elsewhere =
+      report.final_cost > best * (1 + kOtherMinimum) &&
+      Gap(report.final_cost, report.initial_cost, best) > kSolverGaps.back();
+  return elsewhere ? "other_minimum" : "converged";
 }
 
 std::map<StartKey, double> LeastCosts(const std::vector<SolverTrial>& trials) {
@@ -252,15 +254,13 @@ CurveChart GapOverTime(const std::vector<SolverTrial>& trials) {
   for (double at = 1e-3; at < 1.2 * last; at *= 1.2) places.push_back(at);
   return GapChart(trials, places, {"seconds since the call", true},
                   [&](const SolverTrial& trial, double place) {
+                    if (!trial.report.usable) return 1.0;
                     double cost = trial.report.initial_cost;
                     for (const CostAt& at : History(trial.report)) {
                       if (at.seconds <= place) cost = at.cost;
                     }
-                    const auto least = best.find(KeyOf(trial));
-                    return least == best.end()
-                               ? 1.0
-                               : Gap(cost, trial.report.initial_cost,
-                                     least->second);
+                    return Gap(cost, trial.report.initial_cost,
+                               best.at(KeyOf(trial)));
                   });
 }
 

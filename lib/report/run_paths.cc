@@ -36,8 +36,9 @@ std::string RunPaths::HtmlReport() const { return Below("report.html"); }
 std::string RunPaths::Pictures() const { return Below("pictures"); }
 std::string RunPaths::Detections() const { return Below("detections"); }
 
-std::string RunPaths::Problem(int frame, int surface) const {
-  return Below("problems/" + FrameName(frame) + cv::format("_%03d.h5", surface));
+std::string RunPaths::Problem(int frame, int surface, bool first) const {
+  return Below("problems/" + FrameName(frame) + cv::format("_%03d", surface) +
+               (first ? "_first.h5" : ".h5"));
 }
 
 std::string RunPaths::Surface(int id, const std::string& label) const {

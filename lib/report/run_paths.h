@@ -33,8 +33,9 @@ class RunPaths {
   std::string Pictures() const;     ///< RUN/pictures
   /// RUN/detections, the masks of a network that ran inline.
   std::string Detections() const;
-  /// RUN/problems/FRAME_NNN.h5, the last solve of surface NNN in a frame.
-  std::string Problem(int frame, int surface) const;
+  /// RUN/problems/FRAME_NNN.h5, the last solve of surface NNN in a frame; or
+  /// FRAME_NNN_first.h5, the first one of more than one node.
+  std::string Problem(int frame, int surface, bool first) const;
   /// RUN/solver/FRAME.txt
   std::string SolverReport(int frame) const {
     return Below("solver/" + FrameName(frame) + ".txt");

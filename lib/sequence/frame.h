@@ -17,7 +17,8 @@ struct Frame {
   std::string color_stem = {};  ///< The same of the colour file.
   cv::Mat color;                ///< HxW 8UC3, BGR.
   cv::Mat depth;                ///< HxW 32FC1, metres, 0 = no measurement.
-  /// Where the camera is, if that is given, see ReaderOptions::trajectory.
+  /// Where the camera is, if that is given, see ReaderOptions::trajectory; in
+  /// the world of that file.
   std::optional<Rigid3d> world_from_camera = {};
 };
 

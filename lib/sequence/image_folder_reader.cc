@@ -88,8 +88,11 @@ ImageFolderReader::ImageFolderReader(const std::string& folder,
   indices_.resize(pairs_.size());
   std::iota(indices_.begin(), indices_.end(), options_.first_frame);
   calibration_ = ResolveCalibration(folder_, *format_, options_);
+  if (options_.skip_bad_frames) SkipBadFrames();
   if (!options_.trajectory.empty()) FindPoses();
-  if (!options_.skip_bad_frames) return;
+}
+
+void ImageFolderReader::SkipBadFrames() {
   for (const BadFrame& bad : FindBadFrames()) {
     const auto at = std::find(indices_.begin(), indices_.end(), bad.index);
     Skip(static_cast<int>(at - indices_.begin()), bad.reason);
@@ -102,7 +105,6 @@ ImageFolderReader::ImageFolderReader(const std::string& folder,
 
 void ImageFolderReader::FindPoses() {
   const Trajectory given = ReadTumTrajectory(options_.trajectory);
-  Rigid3d first_from_world;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const double time = pairs_[i].depth.timestamp;
     const std::optional<Rigid3d> pose = PoseAt(given, time);
@@ -112,8 +114,7 @@ void ImageFolderReader::FindPoses() {
                        std::to_string(indices_[i]) +
                        ": expected one of every frame");
     }
-    if (i == 0) first_from_world = pose->inverse();
-    poses_[indices_[i]] = first_from_world * *pose;
+    poses_[indices_[i]] = *pose;
   }
 }
 

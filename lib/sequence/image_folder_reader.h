@@ -86,6 +86,8 @@ class ImageFolderReader {
   void CheckFiles(int i) const;
   Frame Read(int i) const;
   std::optional<Frame> ReadOrSkip();
+  /// @throw InputError if no frame is left.
+  void SkipBadFrames();
   /// @throw InputError if a frame has no pose in options_.trajectory.
   void FindPoses();
   /// Leaves out the i-th frame.

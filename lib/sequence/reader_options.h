@@ -21,8 +21,7 @@ struct ReaderOptions {
   DepthOptions depth;  ///< Of every depth image.
   /// Frames whose images are missing or broken are left out; indices stay.
   bool skip_bad_frames = false;
-  /// TUM text file of known poses, one of every frame; empty: none. The world
-  /// is then the first camera that is read.
+  /// TUM text file of known poses, one of every frame; empty: none.
   std::string trajectory;
 
   /// @throw InputError if a value is out of its range.

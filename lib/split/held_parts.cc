@@ -118,4 +118,15 @@ void TakeOutParts(const std::vector<MergeGroup>& groups,
   }
 }
 
+void TakeOutOthers(const std::vector<Candidate>& candidates,
+                   const TrackTable& tracks, ComparedDepth* compared) {
+  for (const Candidate& candidate : candidates) {
+    const int identity = candidate.appearance.identity;
+    for (const auto& [id, track] : tracks) {
+      if (identity == 0 || track.appearance.identity == identity) continue;
+      ForgetPrediction(candidate.mask & (compared->labels == id), compared);
+    }
+  }
+}
+
 }  // namespace splitfusion

@@ -41,6 +41,11 @@ void TakeOutParts(const std::vector<MergeGroup>& groups,
                   const TrackTable& tracks, ComparedDepth* compared,
                   std::vector<Match>* matches);
 
+/// Where a mask is known to be of another one, see InstanceMask::identity,
+/// nothing is predicted of a surface.
+void TakeOutOthers(const std::vector<Candidate>& candidates,
+                   const TrackTable& tracks, ComparedDepth* compared);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_SPLIT_HELD_PARTS_H_

@@ -125,6 +125,7 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                        options_.assignment);
   RecognizeReturned(frame.index, &compared.labels, &matches, &result.decisions);
   TakeOutParts(groups_, candidates, tracks_, &compared, &matches);
+  TakeOutOthers(candidates, tracks_, &compared);
   std::vector<Segment> segments = MakeSegments(candidates, matches, frame.index,
                                                &unconfirmed, &result.decisions);
   AddMissedSurfaces(&segments);

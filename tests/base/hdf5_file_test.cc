@@ -1,6 +1,7 @@
 #include "splitfusion/lib/base/hdf5_file.h"
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <cmath>
 #include <cstdint>
@@ -132,8 +133,6 @@ TEST(Hdf5File, SaysWhatIsNotAsExpected) {
   ExpectInputError([&] { Hdf5Reader(folder / "none.h5"); }, "not found");
   ExpectInputError([&] { Hdf5Reader(folder.Write("b.h5", "text")); },
                    "b.h5: expected an HDF5 file");
-  ExpectInputError([&] { Hdf5Writer(folder / "no/such/c.h5"); },
-                   "cannot be written");
 }
 
 TEST(Hdf5File, GroupsHaveEquallyManyRows) {
@@ -164,6 +163,42 @@ TEST(Hdf5File, RefusesWhatIsNotFinite) {
   std::vector<float> values;
   ExpectInputError([&] { file.Column("group/a", &values); },
                    "dataset group/a has a number that is not finite");
+}
+
+TEST(Hdf5File, AFileThatCannotBeWrittenIsOneLine) {
+  const TemporaryFolder folder;
+  ExpectInputError([&] { Hdf5Writer(folder / "no/such/c.h5"); },
+                   "c.h5: cannot be written");
+}
+
+TEST(Hdf5File, TextsOfOthersAreRead) {
+  // An array of texts is none; of one that another program padded all counts.
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  const hid_t file =
+      H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, 5);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  const hsize_t many = 3000;
+  for (const bool array : {false, true}) {
+    const hid_t space =
+        array ? H5Screate_simple(1, &many, nullptr) : H5Screate(H5S_SCALAR);
+    const hid_t attribute = H5Acreate2(file, array ? "array" : "text", type,
+                                       space, H5P_DEFAULT, H5P_DEFAULT);
+    const std::string text(5 * many, 'x');
+    H5Awrite(attribute, type, text.data());
+    H5Aclose(attribute);
+    H5Sclose(space);
+  }
+  H5Tclose(type);
+  H5Fclose(file);
+  Hdf5Reader reader(path);
+  std::string text;
+  reader.Attribute("text", &text);
+  EXPECT_EQ(text, "xxxxx");
+  ExpectInputError([&] { reader.Attribute("array", &text); },
+                   "expected an attribute array, a text");
 }
 
 TEST(Hdf5File, NoDamageGoesUnnoticed) {

@@ -26,14 +26,18 @@ class ProblemRecorderTest : public ::testing::Test {
     return solvers_.Make("gn_pcg", SolverOptions())->Minimize(problem, graph);
   }
 
-  std::vector<FrozenProblem> Recorded() const {
+  std::vector<FrozenProblem> Recorded() {
     std::vector<FrozenProblem> problems;
+    first_.clear();
     recorder_->EndFrame(
-        [&](const FrozenProblem& problem) { problems.push_back(problem); },
+        [&](const FrozenProblem& problem, bool first) {
+          (first ? first_ : problems).push_back(problem);
+        },
         [](const std::string& reason) { ADD_FAILURE() << reason; });
     return problems;
   }
 
+  std::vector<FrozenProblem> first_;  // As Recorded() has them.
   const Energy energy_ = ParseEnergy("point_to_plane arap", BuiltinTerms());
   const PinholeCamera camera_;
   DeformationGraph graph_;
@@ -72,6 +76,10 @@ TEST_F(ProblemRecorderTest, KeepsTheLastSolveOfEverySurface) {
   EXPECT_EQ(problems[0].graph.motions[3].translation,
             second.motions[3].translation);
   EXPECT_EQ(problems[1].surface, 4);
+  ASSERT_EQ(first_.size(), 2u);
+  EXPECT_EQ(first_[0].graph.motions[3].translation,
+            graph_.motions[3].translation);
+  EXPECT_EQ(first_[1].start.cost, problems[1].start.cost);
 }
 
 TEST_F(ProblemRecorderTest, OtherFramesAreNotRecorded) {

@@ -133,6 +133,62 @@ TEST_P(BentPlateProblem, ThreadsDoNotChangeAByteOfALargerProblem) {
   EXPECT_FALSE(SameBytes(results[0], graph));
 }
 
+TEST_P(BentPlateProblem, GradientsAreThoseAfterTheIteration) {
+  // A second solve starts where the first one ended; by its twists the gradient
+  // is a little another one.
+  SolverOptions options;
+  options.max_iterations = 3;
+  DeformationGraph graph = start_;
+  const SolverReport three = Run(options, &graph);
+  options.max_iterations = 2;
+  DeformationGraph other = start_;
+  Run(options, &other);
+  options.max_iterations = 1;
+  const SolverReport next = Run(options, &other);
+  ASSERT_EQ(three.iterations.size(), 4u);
+  EXPECT_NEAR(three.iterations[2].gradient_max_norm,
+              next.iterations[0].gradient_max_norm,
+              0.1 * next.iterations[0].gradient_max_norm);
+  EXPECT_LT(three.iterations[2].gradient_max_norm,
+            0.5 * three.iterations[1].gradient_max_norm);
+}
+
+TEST_P(BentPlateProblem, CountsTheResidualsOfTheTerms) {
+  DeformationGraph graph = start_;
+  int edges = 0;
+  for (const auto& neighbors : graph.neighbors) edges += int(neighbors.size());
+  EXPECT_EQ(Run(SolverOptions(), &graph).residuals,
+            int(correspondences_.size()) + 3 * edges);
+}
+
+TEST_P(BentPlateProblem, FullReportTellsSizesAndIterations) {
+  DeformationGraph graph = start_;
+  SolverOptions options;
+  options.full_report = true;
+  const std::string text = Run(options, &graph).full_report;
+  for (const char* part :
+       {"Solver Summary", "Parameters", "Residuals", "Cost", "Termination"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  }
+}
+
+TEST(DenseSolver, DoesNotBeginWhatDoesNotFit) {
+  // The Jacobian alone would take hundreds of gigabytes.
+  DeformationGraph graph = PlateGraph();
+  graph.positions.resize(30000, Eigen::Vector3d(0, 0, 1));
+  graph.motions.resize(30000);
+  graph.neighbors.resize(30000);
+  const Energy energy = ParseEnergy("arap", BuiltinTerms());
+  SolverOptions options;
+  options.solver = "ceres";
+  options.linear_solver = "dense_qr";
+  const SolverReport report =
+      Minimize({energy, {}, PinholeCamera()}, options, &graph);
+  EXPECT_FALSE(report.usable);
+  EXPECT_EQ(report.termination, "FAILURE");
+  EXPECT_EQ(report.message.find("dense_qr needs "), 0u) << report.message;
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, BentPlateProblem,
                          ::testing::Values("ceres", "gn_pcg", "gn_cholesky"));
 

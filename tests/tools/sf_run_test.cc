@@ -293,6 +293,11 @@ TEST_F(SfRun, GivenPosesAreThoseOfTheCamera) {
                     (folder_ / "none") + " --trajectory=none.txt",
                 "none.txt");
   ExpectRefused("sf_run",
+                "--sequence=" + (folder_ / "sequence") +
+                    " --output=" + (folder_ / "none") +
+                    " --preset=dynamicfusion --trajectory=" + truth,
+                "expected a background that does not deform");
+  ExpectRefused("sf_run",
                 "--sequence=" + (folder_ / "sequence") + " --output=" +
                     (folder_ / "none") + " --mask_identities=known",
                 "--mask_identities = known: expected given, or nothing");
@@ -373,7 +378,7 @@ TEST_F(SfRun, HelpNamesOwnFlagsAndFitsAScreen) {
   }
   EXPECT_THAT(result.output,
               AllOf(HasSubstr("--sequence"), HasSubstr("--linear_solver"),
-                    HasSubstr("--trust_region")));
+                    HasSubstr("--solver_iterations")));
 }
 
 TEST_F(SfRun, SynthRefusesBadUsage) {

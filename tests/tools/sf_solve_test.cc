@@ -55,7 +55,8 @@ class SfSolve : public SfRun {
 TEST_F(SfSolve, ReplaysTheProblemsOfARun) {
   Synthesize();
   const std::vector<std::string> files = FrozenRun("run");
-  ASSERT_EQ(files.size(), 2u);  // Room and person in frame 2; 0 has no model.
+  // Room and person in frame 2, the person twice; frame 0 has no model.
+  ASSERT_EQ(files.size(), 3u);
   std::string list;
   for (const std::string& file : files) list += file + " ";
   const ProgramResult result = RunProgram(
@@ -64,11 +65,11 @@ TEST_F(SfSolve, ReplaysTheProblemsOfARun) {
                       "--starts=warm,cold --output=" +
                       (folder_ / "out"));
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output, HasSubstr("2 problems; their first costs and "
+  EXPECT_THAT(result.output, HasSubstr("3 problems; their first costs and "
                                        "gradients are the run's, to "));
   EXPECT_EQ(result.errors.find("warning"), std::string::npos) << result.errors;
   const auto rows = Csv(folder_.Read("out/solvers.csv"));
-  ASSERT_EQ(rows.size(), 1u + 2 * 3 * 2 * 2);
+  ASSERT_EQ(rows.size(), 1u + 3 * 3 * 2 * 2);
   EXPECT_EQ(rows[0],
             (std::vector<std::string>{
                 "problem", "solver", "preconditioner", "threads", "start",
@@ -76,7 +77,9 @@ TEST_F(SfSolve, ReplaysTheProblemsOfARun) {
                 "initial_cost", "final_cost", "seconds", "seconds_to_1e-2",
                 "seconds_to_1e-4", "seconds_to_1e-6"}));
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    EXPECT_EQ(rows[i][0], i <= 12 ? "000002_000" : "000002_001");
+    EXPECT_EQ(rows[i][0], i <= 12   ? "000002_000"
+                          : i <= 24 ? "000002_001"
+                                    : "000002_001_first");
     EXPECT_LE(std::stod(rows[i][10]), std::stod(rows[i][9]));
   }
   for (const char* figure : {"profile_1e-2", "profile_1e-4", "profile_1e-6",
@@ -125,7 +128,8 @@ TEST_F(SfSolve, ChecksTheDerivativesOfARun) {
   const ProgramResult result =
       RunProgram("sf_solve", list + "--check_gradients");
   EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
-  for (const char* term : {"point_to_plane", "color", "arap", "tracks"}) {
+  for (const char* term :
+       {"point_to_plane", "color", "arap", "tracks", "temporal_arap"}) {
     EXPECT_THAT(result.output,
                 HasSubstr(std::string(term) + ": derivatives deviate by "));
   }
@@ -144,6 +148,12 @@ TEST_F(SfSolve, SaysWhatIsWrong) {
                 "--starts = hot: expected warm, cold or both");
   ExpectRefused("sf_solve", "a.h5 --threads=0" + output,
                 "--threads = 0: expected numbers 1..1024");
+  ExpectRefused("sf_solve", "a.h5 a.h5" + output,
+                "problems = a.h5: expected each once");
+  ExpectRefused("sf_solve", "a.h5 --solvers=gn_pcg,gn_pcg:jacobi" + output,
+                "--solvers = gn_pcg:jacobi: expected each once");
+  ExpectRefused("sf_solve", "a.h5 --solvers=ceres:cgnr:dense_qr" + output,
+                "expected one linear_solver for each solver");
   ExpectRefused("sf_solve", "a.h5 --repeat=0" + output,
                 "--repeat = 0: expected >= 1");
   EXPECT_FALSE(folder_.Has("out"));
