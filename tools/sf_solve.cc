@@ -240,7 +240,13 @@ std::vector<SolverTrial> RunTrials(const std::vector<NamedProblem>& problems,
   ProgressLine progress;
   const Stopwatch watch;
   const std::size_t total = plans.size() * settings.size();
+  const NamedProblem* warm = nullptr;
   for (const auto& [named, plan] : plans) {
+    // Memory that is touched for the first time must not count for whoever
+    // comes first.
+    if (std::exchange(warm, named) != named) {
+      RunTrial(named->name, named->problem, settings.front(), solvers, plan);
+    }
     for (const SolverSetting& setting : settings) {
       if (Interrupted()) break;
       {
