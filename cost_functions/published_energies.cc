@@ -12,14 +12,14 @@ const std::vector<PublishedEnergy>& PublishedEnergies() {
       {"dynamicfusion",
        "point_to_plane(weight=1,loss=tukey,scale=0.01) "
        "arap(weight=8,loss=huber,scale=0.0001)",
-       "Newcombe et al. 2015, Eq. 5 to 8; without their hierarchy of nodes and "
+       "Newcombe et al. 2015; without their hierarchy of nodes and "
        "the weights of its edges"},
       {"volumedeform",
        "point_to_plane(weight=1) tracks(weight=16) arap(weight=8)",
-       "Innmann et al. 2016, Eq. 4 to 8; tracks by optical flow in place of "
+       "Innmann et al. 2016; tracks by optical flow in place of "
        "SIFT features"},
       {"surfelwarp", "point_to_plane(weight=1) arap(weight=8)",
-       "Gao and Tedrake 2018, Eq. 4 to 6: terms and losses are those of "
+       "Gao and Tedrake 2018: terms and losses are those of "
        "splitfusion"}};
   return energies;
 }

@@ -10,7 +10,7 @@ namespace splitfusion {
 struct PublishedEnergy {
   std::string name;    ///< As in --energy.
   std::string terms;   ///< Syntax of ParseEnergy().
-  std::string source;  ///< Paper and equations, and what is not the same.
+  std::string source;  ///< Paper, and what is not the same.
 };
 
 /// All of them. Sums are means here, so that weights are the toolkit's own.
