@@ -227,5 +227,28 @@ TEST(SplitOptions, RigidObjectsIsOneOfTwoWords) {
   EXPECT_NO_THROW(options.Check());
 }
 
+TEST(TakeOutOthers, NothingIsPredictedWhereSomebodyElseIsKnownToBe) {
+  TrackTable tracks;
+  for (const int identity : {10, 20}) {
+    const int id = AddTrack(0, "person", SurfaceKind::kNonRigid, &tracks);
+    tracks.at(id).appearance.identity = identity;
+  }
+  ComparedDepth compared;
+  compared.labels = (LabelImage(1, 4) << 1, 1, 2, 0);
+  compared.agreement = cv::Mat_<uchar>(1, 4, uchar(DepthState::kObserved));
+  Candidate own;
+  own.mask = cv::Mat_<uchar>(1, 4, uchar(255));
+  const LabelImage before = compared.labels.clone();
+  TakeOutOthers({own}, tracks, &compared);  // Without an identity.
+  EXPECT_EQ(cv::countNonZero(compared.labels != before), 0);
+  own.appearance.identity = 20;
+  TakeOutOthers({own}, tracks, &compared);
+  EXPECT_EQ(compared.labels(0, 0), 0);
+  EXPECT_EQ(compared.labels(0, 1), 0);
+  EXPECT_EQ(compared.labels(0, 2), 2);
+  EXPECT_EQ(compared.agreement(0, 0), uchar(DepthState::kUnmeasured));
+  EXPECT_EQ(compared.agreement(0, 2), uchar(DepthState::kObserved));
+}
+
 }  // namespace
 }  // namespace splitfusion
