@@ -17,7 +17,16 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kTruncation = 0.02f;
-constexpr float kCarving = -0.07f;
+
+/// With noise of 10 mm at every depth.
+FusionView ViewOf(float refutation) {
+  FusionView view = {};
+  view.truncation = kTruncation;
+  view.refutation = refutation;
+  view.noise.least = 0.01;
+  view.noise.growth = 0;
+  return view;
+}
 
 /// A row of pixels of all depths and roles; some are no depths and no roles.
 struct Row {
@@ -34,29 +43,36 @@ struct Row {
   std::vector<std::uint8_t> role;
 };
 
+/// Expects what is said of a row of `count` pixels; `carving`: how far behind
+/// their depth those reach that carve.
+void ExpectPixels(int count, const FusionView& view, float carving) {
+  const Row row(count);
+  std::vector<FusionPixel> pixels(count);
+  std::vector<float> reach(count, 1);
+  FillPixels(view, row.depth.data(), row.weight.data(), row.role.data(), count,
+             pixels.data(), reach.data());
+  for (int u = 0; u < count; ++u) {
+    const auto role = static_cast<PixelRole>(row.role[u]);
+    const bool writes = role == PixelRole::kWrite;
+    if (!(row.depth[u] > 0) || !(writes || role == PixelRole::kCarve)) {
+      EXPECT_EQ(pixels[u].depth, -kInfinity) << u << " of " << count;
+      EXPECT_EQ(pixels[u].weight, 0);
+      EXPECT_EQ(reach[u], 1);
+      continue;
+    }
+    EXPECT_EQ(pixels[u].depth, row.depth[u]) << u << " of " << count;
+    EXPECT_EQ(std::abs(pixels[u].weight), row.weight[u]);
+    EXPECT_EQ(std::signbit(pixels[u].weight), !writes);
+    const float end = row.depth[u] + (writes ? 0.03f : carving);
+    EXPECT_NEAR(reach[u], std::max(end, 1.0f), 1e-6);
+  }
+}
+
 TEST(FillPixels, SaysWhatPixelsDo) {
   // Vectors, and what is left of them.
   for (const int count : {1, 7, 8, 13, 16, 117}) {
-    const Row row(count);
-    std::vector<FusionPixel> pixels(count);
-    std::vector<float> reach(count, 1);
-    FillPixels(row.depth.data(), row.weight.data(), row.role.data(), count,
-               kTruncation, kCarving, pixels.data(), reach.data());
-    for (int u = 0; u < count; ++u) {
-      const auto role = static_cast<PixelRole>(row.role[u]);
-      const bool writes = role == PixelRole::kWrite;
-      if (!(row.depth[u] > 0) || !(writes || role == PixelRole::kCarve)) {
-        EXPECT_EQ(pixels[u].depth, -kInfinity) << u << " of " << count;
-        EXPECT_EQ(pixels[u].weight, 0);
-        EXPECT_EQ(reach[u], 1);
-        continue;
-      }
-      EXPECT_EQ(pixels[u].depth, row.depth[u]) << u << " of " << count;
-      EXPECT_EQ(std::abs(pixels[u].weight), row.weight[u]);
-      EXPECT_EQ(std::signbit(pixels[u].weight), !writes);
-      const float end = row.depth[u] + (writes ? kTruncation : kCarving);
-      EXPECT_EQ(reach[u], std::max(end, 1.0f));
-    }
+    ExpectPixels(count, ViewOf(0), -kTruncation);
+    ExpectPixels(count, ViewOf(1), 0.03f);
   }
 }
 

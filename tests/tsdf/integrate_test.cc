@@ -124,6 +124,34 @@ TEST(IntegrateRigid, WhatIsPassedOverWouldNotHaveChanged) {
   EXPECT_LT(changed, static_cast<int>(volume.leaf_count()) - 50);
 }
 
+/// Mean z-depth of the mesh of a wall at z-depth `depth` after many frames of
+/// Gaussian noise, metres.
+double NoisyWall(double depth) {
+  std::mt19937 random(3);
+  const PinholeCamera camera = SmallCamera();
+  TsdfOptions options;
+  options.has_color = false;
+  TsdfVolume volume(options);
+  const auto sigma = static_cast<float>(camera.noise.Sigma(depth));
+  std::normal_distribution<float> noise(0, sigma);
+  for (int frame = 0; frame < 40; ++frame) {
+    DepthObservation seen = ObserveAll(camera, WallDepth(camera, depth));
+    for (float& d : seen.depth) d += noise(random);
+    AllocateBand(seen, Rigid3d::Identity(), &volume);
+    IntegrateRigid(seen, Rigid3d::Identity(), &volume);
+  }
+  const TriangleMesh mesh = ExtractMesh(volume, 8);
+  double sum = 0;
+  for (const Eigen::Vector3f& p : mesh.vertices) sum += p.z();
+  return sum / static_cast<double>(mesh.vertices.size());
+}
+
+TEST(IntegrateRigid, NoiseBeyondTheTruncationMovesNoSurface) {
+  for (const double depth : {1.5, 3.5, 4.5}) {
+    EXPECT_NEAR(NoisyWall(depth), depth, 0.0005) << depth;
+  }
+}
+
 TEST(IntegrateRigid, BehindTheCameraNothingChanges) {
   TsdfVolume volume = BlocksAllAround();
   Rigid3d pose = Rigid3d::Identity();

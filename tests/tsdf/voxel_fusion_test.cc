@@ -61,10 +61,13 @@ Block RandomBlock(std::mt19937* random) {
   return block;
 }
 
-/// Slanted wall with holes, of pixels of all roles and weights.
+/// Slanted wall with holes, of pixels of all roles and weights, some so noisy
+/// that they reach farther than the truncation.
 DepthObservation RandomObservation(std::mt19937* random) {
-  DepthObservation observation = ObserveAll(
-      SmallCamera(), PlaneDepth(SmallCamera(), {0.3, 0.1, 0.9}, 1.0));
+  PinholeCamera camera = SmallCamera();
+  camera.noise.growth = 0.03;
+  DepthObservation observation =
+      ObserveAll(camera, PlaneDepth(camera, {0.3, 0.1, 0.9}, 1.0));
   std::uniform_int_distribution<int> die(0, 11);
   for (int v = 0; v < observation.depth.rows; ++v) {
     for (int u = 0; u < observation.depth.cols; ++u) {
@@ -129,12 +132,15 @@ bool UpdateVoxel(const DepthObservation& seen, const float dither[],
   const double depth = seen.depth(v, u);
   if (role == PixelRole::kNone || !(depth > 0)) return is_certain;
   const double sdf = depth - p.z();
-  const double free_from = truncation + 3 * DepthNoise().Sigma(depth);
+  const double noise = 3 * seen.camera.noise.Sigma(depth);
+  const double free_from = truncation + noise;
+  const double behind = std::max(truncation, noise);
   is_certain = is_certain && !IsClose(std::abs(sdf), truncation, kMargin) &&
+               !IsClose(sdf, -behind, kMargin) &&
                !IsClose(sdf, free_from, kMargin);
-  const bool in_band = role == PixelRole::kWrite && sdf >= -truncation;
+  const bool in_band = role == PixelRole::kWrite && sdf >= -behind;
   if (!in_band && sdf <= truncation) {
-    if (seen.others_refute && sdf > -truncation) {
+    if (seen.others_refute && sdf > -behind) {
       const float rest = block->weight[i] - seen.weight(v, u);
       const bool refuted = seen.weight(v, u) > 0;
       block->weight[i] = std::max(rest, 0.0f);
@@ -151,8 +157,8 @@ bool UpdateVoxel(const DepthObservation& seen, const float dither[],
   if (!(sum > 0)) return is_certain;
   const double blend = confidence / sum;
   float& distance = block->distance[i];
-  distance = static_cast<float>(distance +
-                                blend * (std::min(sdf, truncation) - distance));
+  distance = static_cast<float>(
+      distance + blend * (std::clamp(sdf, -truncation, truncation) - distance));
   if (in_band && sdf < truncation) {
     block->color[i] = Blend(block->color[i], seen.color.at<cv::Vec3b>(v, u),
                             blend, dither[i % 8], &is_certain);

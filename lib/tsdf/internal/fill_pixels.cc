@@ -12,13 +12,16 @@ namespace splitfusion {
 namespace internal {
 
 SPLITFUSION_VECTOR_CLONES
-void FillPixels(const float* __restrict depth, const float* __restrict weight,
-                const std::uint8_t* __restrict role, int count, float writing,
-                float carving, FusionPixel* __restrict pixels,
-                float* __restrict reach) {
+void FillPixels(const FusionView& view, const float* __restrict depth,
+                const float* __restrict weight,
+                const std::uint8_t* __restrict role, int count,
+                FusionPixel* __restrict pixels, float* __restrict reach) {
   constexpr auto kWrites = static_cast<std::uint8_t>(PixelRole::kWrite);
   constexpr auto kCarves = static_cast<std::uint8_t>(PixelRole::kCarve);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const float truncation = view.truncation;
+  const bool refutes = view.refutation > 0;
+  const DepthNoise noise = view.noise;
   for (int u = 0; u < count; ++u) {
     const bool writes = role[u] == kWrites;
     const bool counts = (writes | (role[u] == kCarves)) & (depth[u] > 0);
@@ -26,7 +29,8 @@ void FillPixels(const float* __restrict depth, const float* __restrict weight,
     const float confidence = counts ? weight[u] : 0;
     pixels[u].depth = known;
     pixels[u].weight = writes ? confidence : -confidence;
-    const float reaches = known + (writes ? writing : carving);
+    const float behind = ReachBehind(depth[u], truncation, noise);
+    const float reaches = known + ((writes | refutes) ? behind : -truncation);
     reach[u] = reach[u] < reaches ? reaches : reach[u];
   }
 }

@@ -10,10 +10,10 @@ namespace internal {
 
 /// Records of a row of pixels, given depths (metres, 0 = none), confidences and
 /// roles (PixelRole). Raises the `reach` of each to the z-depth up to which it
-/// changes voxels, if it does: its own and `writing` or `carving`, metres.
-void FillPixels(const float* depth, const float* weight,
-                const std::uint8_t* role, int count, float writing,
-                float carving, FusionPixel* pixels, float* reach);
+/// changes voxels, if it does; of `view` all but its images counts.
+void FillPixels(const FusionView& view, const float* depth, const float* weight,
+                const std::uint8_t* role, int count, FusionPixel* pixels,
+                float* reach);
 
 /// Packed colours of a row of pixels, given blue, green and red: the nearest
 /// ones, or some beside them.

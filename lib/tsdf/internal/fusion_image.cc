@@ -48,8 +48,7 @@ Range PixelsOf(const Eigen::AlignedBox3f& box, int axis, float focal,
 
 FusionImage::FusionImage(const DepthObservation& observation,
                          const TsdfOptions& options, int time)
-    : truncation_(static_cast<float>(options.truncation)),
-      columns_((observation.camera.width + kTile - 1) / kTile),
+    : columns_((observation.camera.width + kTile - 1) / kTile),
       rows_((observation.camera.height + kTile - 1) / kTile) {
   const PinholeCamera& camera = observation.camera;
   const std::size_t count =
@@ -70,7 +69,7 @@ FusionImage::FusionImage(const DepthObservation& observation,
            static_cast<float>(camera.cx),
            static_cast<float>(camera.cy),
            {},
-           truncation_,
+           static_cast<float>(options.truncation),
            observation.others_refute ? 1.0f : 0.0f,
            static_cast<float>(options.max_weight),
            camera.noise};
@@ -85,10 +84,8 @@ void FusionImage::FillTiles(const DepthObservation& observation, int tile_row) {
   const int end = std::min(view_.height, (tile_row + 1) * kTile);
   for (int v = tile_row * kTile; v < end; ++v) {
     const std::size_t row = static_cast<std::size_t>(v) * width;
-    FillPixels(observation.depth[v], observation.weight[v], observation.role[v],
-               width, truncation_,
-               observation.others_refute ? truncation_ : -truncation_,
-               &pixels_[row], reach.data());
+    FillPixels(view_, observation.depth[v], observation.weight[v],
+               observation.role[v], width, &pixels_[row], reach.data());
     if (color_ == nullptr) continue;
     FillColors(observation.color.ptr(v), width, &color_[row]);
   }

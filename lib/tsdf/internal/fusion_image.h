@@ -36,7 +36,6 @@ class FusionImage {
 
   void FillTiles(const DepthObservation& observation, int tile_row);
 
-  float truncation_;
   int columns_, rows_;  // Of tiles.
   // Filled in parallel, not before.
   std::unique_ptr<FusionPixel[]> pixels_;

@@ -7,7 +7,6 @@
 
 #include "splitfusion/lib/base/vector_clones.h"
 #include "splitfusion/lib/geometry/camera.h"
-#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/tsdf/internal/packed_color.h"
 
 namespace splitfusion {
@@ -93,14 +92,15 @@ SPLITFUSION_INLINE int Compare(const FusionView& view, const SeenSlab& at,
   for (int i = 0; i < kSlab; ++i) {
     const FusionPixel pixel = seen.pixel[i];
     const float sdf = pixel.depth - at.z[i];
-    const bool counts = sdf > (pixel.weight >= 0 ? -truncation : truncation);
+    const float behind = -ReachBehind(pixel.depth, truncation, view.noise);
+    const bool counts = sdf > (pixel.weight >= 0 ? behind : truncation);
     // That it is empty in front of what was measured, by more than noise, is
     // certain at any range, other than where a noisy ray ended.
     const bool is_free =
-        sdf > truncation + float(kNoiseSigmas) * view.noise.Sigma(pixel.depth);
-    // Of a pixel that only carves, within the truncation.
+        sdf > truncation + kNoiseAlone.At(pixel.depth, view.noise);
+    // Of a pixel that only carves, where one that writes would have written.
     const float refuted =
-        sdf > -truncation ? std::min(view.refutation * pixel.weight, 0.0f) : 0;
+        sdf > behind ? std::min(view.refutation * pixel.weight, 0.0f) : 0;
     const float confidence = counts ? std::fabs(pixel.weight) : refuted;
     update->sdf[i] = sdf;
     update->confidence[i] = is_free ? 1 : confidence;

@@ -1,12 +1,24 @@
 #ifndef SPLITFUSION_LIB_TSDF_INTERNAL_VOXEL_FUSION_H_
 #define SPLITFUSION_LIB_TSDF_INTERNAL_VOXEL_FUSION_H_
 
+#include <algorithm>
 #include <cstdint>
 
+#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/geometry/depth_noise.h"
 
 namespace splitfusion {
 namespace internal {
+
+/// How far behind a measured depth voxels are written, metres: the truncation,
+/// or where that is more, as far as noise reaches. Distances are clamped at the
+/// truncation both ways. Were those that noise brings beyond it left out behind
+/// the surface, but not before it, the mean would move the surface away: at
+/// noise of half of the truncation by a twentieth of the noise.
+inline float ReachBehind(float depth, float truncation,
+                         const DepthNoise& noise) {
+  return std::max(truncation, kNoiseAlone.At(depth, noise));
+}
 
 /// What one pixel does to the voxels on its ray.
 struct FusionPixel {
