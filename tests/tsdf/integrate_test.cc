@@ -130,11 +130,12 @@ double NoisyWall(double depth) {
   std::mt19937 random(3);
   const PinholeCamera camera = SmallCamera();
   TsdfOptions options;
+  options.voxel_size = 0.02;
   options.has_color = false;
   TsdfVolume volume(options);
   const auto sigma = static_cast<float>(camera.noise.Sigma(depth));
   std::normal_distribution<float> noise(0, sigma);
-  for (int frame = 0; frame < 40; ++frame) {
+  for (int frame = 0; frame < 20; ++frame) {
     DepthObservation seen = ObserveAll(camera, WallDepth(camera, depth));
     for (float& d : seen.depth) d += noise(random);
     AllocateBand(seen, Rigid3d::Identity(), &volume);
