@@ -298,6 +298,7 @@ SurfaceProblem FrozenProblem::View() const {
   view.initial_radius = initial_radius;
   view.lost = AddressOf(lost);
   view.tracks = AddressOf(tracks);
+  view.surface = surface;
   return view;
 }
 

@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "splitfusion/lib/energy/node_covariance.h"
@@ -25,6 +27,16 @@ std::vector<Eigen::Vector3f> PointsOfProblem(
         (turned_back * (x.cast<double>() - moved_to) + g).cast<float>());
   }
   return points;
+}
+
+/// The direction in which a point is known least, as long as its standard
+/// deviation along it, metres; away from the camera.
+Eigen::Vector3d WeakestDirection(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  const Eigen::Vector3d weakest =
+      solver.eigenvectors().col(2) *
+      std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
+  return weakest.z() < 0 ? Eigen::Vector3d(-weakest) : weakest;
 }
 
 }  // namespace
@@ -67,8 +79,11 @@ void WriteUncertainty(const std::string& path,
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double>& sigma =
         properties[std::string("sigma_") + "xyz"[axis]];
+    std::vector<double>& weakest =
+        properties[std::string("weakest_") + "xyz"[axis]];
     for (const Eigen::Matrix3d& covariance : uncertainty.covariances) {
       sigma.push_back(std::sqrt(covariance(axis, axis)));
+      weakest.push_back(WeakestDirection(covariance)[axis]);
     }
   }
   WritePly(path, uncertainty.mesh, properties);

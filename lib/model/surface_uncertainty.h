@@ -32,7 +32,8 @@ SurfaceUncertainty EstimateUncertainty(const Surface& surface,
 
 /// Writes the mesh as PLY with the properties `sigma` (Sigmas()), `sigma_x`,
 /// `sigma_y` and `sigma_z` (standard deviations along the axes of the camera)
-/// of every vertex, metres.
+/// and `weakest_x`, `weakest_y` and `weakest_z` (the direction in which it is
+/// known least, as long as its deviation along it) of every vertex, metres.
 ///
 /// @throw InputError if the file cannot be written.
 void WriteUncertainty(const std::string& path,

@@ -55,11 +55,14 @@ TEST_F(SfRunUncertainty, VerticesHaveTheirDeviationsAndMotionsStayTheSame) {
       ReadPly(folder_ / "run/uncertainty/000002_001.ply", &properties);
   ASSERT_EQ(properties["sigma"].size(), mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    double squares = 0;
-    for (const char* axis : {"sigma_x", "sigma_y", "sigma_z"}) {
-      squares += std::pow(properties[axis][i], 2) / 3;
+    double squares = 0, weakest = 0;
+    for (const std::string axis : {"x", "y", "z"}) {
+      squares += std::pow(properties["sigma_" + axis][i], 2);
+      weakest += std::pow(properties["weakest_" + axis][i], 2);
     }
-    EXPECT_NEAR(properties["sigma"][i], std::sqrt(squares), 1e-6);
+    EXPECT_NEAR(properties["sigma"][i], std::sqrt(squares / 3), 1e-6);
+    EXPECT_LE(weakest, squares * (1 + 1e-5));
+    EXPECT_GE(weakest, squares / 3 * (1 - 1e-5));
     // From the noise of one pixel to what nothing holds.
     EXPECT_GT(properties["sigma"][i], 1e-5);
     EXPECT_LT(properties["sigma"][i], 1.0);
