@@ -168,7 +168,9 @@ bool SequenceRun::ProcessNext() {
   // Less than the sum of its parts: reading overlaps with the frame before.
   report.total_seconds = frame_time.Seconds();
   folder_.CheckHeld();
+  const Stopwatch judging;
   WriteUncertainties(&report);
+  directory_->AddWritingSeconds(judging.Seconds());
   directory_->AddFrame(report, work_->fusion.trajectory().back());
   WarnOfMissingDepth(frame);
   WarnOfLostSurfaces(report);
