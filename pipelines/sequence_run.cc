@@ -10,6 +10,8 @@
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/archive_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/median.h"
+#include "splitfusion/lib/model/surface_uncertainty.h"
 #include "splitfusion/lib/report/frame_pictures.h"
 
 namespace splitfusion {
@@ -161,10 +163,14 @@ bool SequenceRun::ProcessNext() {
   if (!prepared) return false;
   const Frame frame = prepared->frame;
   if (options_.recorder) options_.recorder->BeginFrame(frame.index);
+  if (options_.solutions) options_.solutions->BeginFrame(frame.index);
   FrameReport report = work_->fusion.ProcessFrame(std::move(*prepared));
   // Less than the sum of its parts: reading overlaps with the frame before.
   report.total_seconds = frame_time.Seconds();
   folder_.CheckHeld();
+  const Stopwatch judging;
+  WriteUncertainties(&report);
+  directory_->AddWritingSeconds(judging.Seconds());
   directory_->AddFrame(report, work_->fusion.trajectory().back());
   WarnOfMissingDepth(frame);
   WarnOfLostSurfaces(report);
@@ -217,6 +223,24 @@ void SequenceRun::WriteProblems(int index) const {
       [&](const std::string& reason) {
         Warn("frame " + std::to_string(index) + ": not frozen: " + reason);
       });
+}
+
+/// Of the surfaces that were tracked, but for a ray cast background, which has
+/// no mesh before the end; says in the report how well they are held.
+void SequenceRun::WriteUncertainties(FrameReport* report) const {
+  if (!options_.solutions) return;
+  for (SurfaceReport& object : report->surfaces) {
+    const SolvedProblem* solved = options_.solutions->Find(object.id);
+    const Surface& surface = *work_->fusion.surfaces().at(object.id);
+    if (solved == nullptr || surface.is_ray_cast() || !object.event.empty() ||
+        object.state != TrackState::kTracked) {
+      continue;
+    }
+    const SurfaceUncertainty found = EstimateUncertainty(surface, *solved);
+    object.hold = {found.nodes, found.held_by_prior, Median(found.Sigmas())};
+    WriteUncertainty(directory_->paths().Uncertainty(report->frame, object.id),
+                     found);
+  }
 }
 
 void SequenceRun::ShowProgress() const {

@@ -10,6 +10,7 @@
 #include "splitfusion/lib/base/read_ahead.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/problem_recorder.h"
+#include "splitfusion/lib/energy/solution_recorder.h"
 #include "splitfusion/lib/report/checkpoint_schedule.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
@@ -38,6 +39,9 @@ struct SequenceRunOptions {
   /// What keeps the problems of the solvers of Reconstruction, to be written;
   /// may be null.
   std::shared_ptr<ProblemRecorder> recorder;
+  /// What keeps their solutions, for the uncertainty of the surfaces; may be
+  /// null.
+  std::shared_ptr<SolutionRecorder> solutions;
 };
 
 /// How far a run is.
@@ -119,6 +123,7 @@ class SequenceRun {
   std::optional<PreparedFrame> ReadNext();
   void WritePictures(const Frame& frame, int index) const;
   void WriteProblems(int index) const;
+  void WriteUncertainties(FrameReport* report) const;
   void ShowProgress() const;
 
   void CheckReconstructed() const;

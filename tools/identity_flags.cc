@@ -71,8 +71,8 @@ const std::set<std::string>& Uncounted() {
 /// Flags of what is written about a result.
 const std::set<std::string>& Outputs() {
   static const std::set<std::string> names = {
-      "freeze",       "full_report",  "keep_checkpoints", "pictures_every",
-      "warped_every", "warped_whole", "write_masks"};
+      "covariance",     "freeze",       "full_report",  "keep_checkpoints",
+      "pictures_every", "warped_every", "warped_whole", "write_masks"};
   return names;
 }
 

@@ -11,13 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/evaluation/evaluation_json.h"
 #include "splitfusion/lib/evaluation/evaluation_table.h"
+#include "splitfusion/lib/evaluation/motion_calibration.h"
 #include "splitfusion/lib/evaluation/point_follower.h"
 #include "splitfusion/lib/evaluation/run_evaluation.h"
 #include "splitfusion/lib/evaluation/track_point.h"
+#include "splitfusion/lib/report/curve_chart.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_marker.h"
 #include "splitfusion/lib/report/run_paths.h"
@@ -60,6 +63,11 @@ DEFINE_int32(track_frames, 30,
 DEFINE_string(track_frame, "-1",
               "Frames in which true points are taken, as 30,46,60; -1 = the "
               "one in which most are visible.");
+DEFINE_string(calibration, "",
+              "Name of a .json and an .svg to write: deviations of a run with "
+              "--covariance=1 against the true errors.");
+DEFINE_double(uncertainty_scale, 1, "What they are multiplied by.");
+DEFINE_int32(uncertainty_every, 1, "Of its frames, every n-th.");
 DEFINE_int32(presence_every, 1,
              "Presence and shape in every n-th frame; 0 = never.");
 DEFINE_int32(plain_view_pixels, 8000,
@@ -72,6 +80,7 @@ constexpr char kUsage[] =
     "Compares results with live depth and ground truth; one of\n"
     "  sf_evaluate --run=RUN [--ground_truth=DIR]\n"
     "  sf_evaluate --run=RUN --track_query=CSV --track_output=CSV\n"
+    "  sf_evaluate --run=RUN --ground_truth=DIR --calibration=NAME\n"
     "  sf_evaluate --trajectory=FILE --ground_truth=FILE\n"
     "  sf_evaluate --mesh=PLY --ground_truth_mesh=PLY\n";
 
@@ -145,6 +154,37 @@ void FollowQueries(const RecordedRun& run,
             << (followed.by_mask ? "; surfaces by mask" : "") << '\n';
 }
 
+CurveChart CalibrationChart(const MotionCalibration& calibration) {
+  CurveChart chart;
+  chart.title = "Motions of points from frame to frame, " +
+                std::to_string(calibration.points) + " points";
+  chart.x.label = "share within a multiple of sigma, expected";
+  chart.y.label = "share observed";
+  for (int axis = 0; axis < 3; ++axis) {
+    chart.curves.push_back(
+        {std::string(1, "xyz"[axis]), calibration.curves[axis]});
+  }
+  chart.curves.push_back({"as expected", {{0, 0}, {1, 1}}});
+  return chart;
+}
+
+void CalibrateUncertainty(const RecordedRun& run,
+                          const std::vector<AnimatedSurface>& surfaces,
+                          const GroundTruth& truth) {
+  const MotionCalibration calibration =
+      Calibrate(MotionErrors(run, surfaces, truth, FLAGS_uncertainty_every),
+                FLAGS_uncertainty_scale);
+  WriteJson(FLAGS_calibration + ".json", ToJson(calibration), 2);
+  WriteFileAtomically(FLAGS_calibration + ".svg", [&](std::ostream& out) {
+    out << CurveChartSvg(CalibrationChart(calibration));
+  });
+  std::cout << calibration.points << " points; within two deviations along x, "
+            << "y, z: " << calibration.within_two[0] << ' '
+            << calibration.within_two[1] << ' ' << calibration.within_two[2]
+            << " with scale " << calibration.scale
+            << "; fitted scale: " << calibration.fitted_scale << '\n';
+}
+
 /// What is read of a run must be as the run wrote it.
 void CheckRunFiles() {
   const std::optional<RunMarker> marker = ReadRunMarker(FLAGS_run);
@@ -191,6 +231,10 @@ void EvaluateRunDirectory(const EvaluationOptions& options,
     FollowQueries(run, surfaces, options);
     if (!truth) return;
   }
+  if (!FLAGS_calibration.empty()) {
+    CalibrateUncertainty(run, surfaces, *truth);
+    return;
+  }
   RunEvaluation evaluation = EvaluateRun(run, surfaces, truth, options);
   evaluation.whole_model = FLAGS_whole_model;
   Publish(FormatTable(evaluation), ToJson(evaluation),
@@ -213,6 +257,9 @@ void CheckUsage() {
   require(FLAGS_with_unknown, "--with_unknown cannot be switched off");
   require(!given(FLAGS_track_query) || given(FLAGS_run),
           "--track_query needs --run");
+  require(!given(FLAGS_calibration) ||
+              (given(FLAGS_run) && given(FLAGS_ground_truth)),
+          "--calibration needs --run and --ground_truth");
   require(!given(FLAGS_trajectory) || given(FLAGS_ground_truth),
           "--trajectory needs --ground_truth");
   require(given(FLAGS_mesh) == given(FLAGS_ground_truth_mesh),

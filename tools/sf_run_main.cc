@@ -53,6 +53,7 @@ DEFINE_int32(pictures_every, 10, "Pictures of every n-th frame; 0 = none.");
 DEFINE_bool(warped_whole, false,
             "Warped meshes show also what was seen only later.");
 DEFINE_bool(write_masks, true, "Write refined masks of every frame.");
+DEFINE_int32(covariance, 0, "Uncertainty of surfaces, every n-th frame.");
 DEFINE_int32(freeze, 0, "Problems of every n-th frame, for sf_solve.");
 DECLARE_string(format);
 DECLARE_string(masks);
@@ -108,6 +109,9 @@ SequenceRunOptions RunOptionsFromFlags() {
   options.from = {FLAGS_from, FLAGS_at};
   if (FLAGS_freeze > 0) {
     options.recorder = std::make_shared<ProblemRecorder>(FLAGS_freeze);
+  }
+  if (FLAGS_covariance > 0) {
+    options.solutions = std::make_shared<SolutionRecorder>(FLAGS_covariance);
   }
   options.facts = {FLAGS_preset, FlagfileText(), LibraryVersions()};
   return options;
@@ -170,6 +174,8 @@ void CheckValues() {
               "a number of frames, or 0");
   CheckOption(FLAGS_freeze >= 0, "freeze", FLAGS_freeze,
               "a number of frames, or 0");
+  CheckOption(FLAGS_covariance >= 0, "covariance", FLAGS_covariance,
+              "a number of frames, or 0");
   CheckOption(FLAGS_checkpoint_every >= -1, "checkpoint_every",
               FLAGS_checkpoint_every, "a number of frames, 0 or -1");
   CheckOption(!FLAGS_keep_checkpoints || FLAGS_checkpoint_every > 0,
@@ -207,6 +213,9 @@ int Reconstruct(
   if (run_options.recorder) {
     registries.solvers = run_options.recorder->Watch(registries.solvers);
   }
+  if (run_options.solutions) {
+    registries.solvers = run_options.solutions->Watch(registries.solvers);
+  }
   const auto make = [&] {
     return MakeReconstruction(reading, options, registries);
   };
@@ -223,7 +232,11 @@ int Reconstruct(
   SequenceRun run(std::move(work), make, &folder, run_options,
                   Hooks(&progress));
   run.Execute();
-  std::cout << VerdictLine(run.Summary()) << std::endl;
+  const RunSummary summary = run.Summary();
+  std::cout << VerdictLine(summary) << std::endl;
+  for (const std::string& line : HoldLines(summary)) {
+    std::cout << line << std::endl;
+  }
   return kExitDone;
 }
 

@@ -135,9 +135,8 @@ void PrintHelp(const std::string& source, const std::string& usage) {
                 << Listed(flags);
     }
   }
-  std::cout << (has_more ? "More of the method: --helpon=method_details.\n"
-                         : "")
-            << "Also --flagfile=FILE (one flag a line), --helpfull.\n";
+  std::cout << "Also " << (has_more ? "--helpon=method_details, " : "")
+            << "--flagfile=FILE (one flag a line), --helpfull.\n";
 }
 
 /// @throw InputError if something on the command line is not a flag, but there

@@ -1,5 +1,4 @@
 #include <Eigen/CholmodSupport>
-#include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -7,29 +6,12 @@
 
 #include "splitfusion/lib/energy/block_kernels.h"
 #include "splitfusion/lib/energy/linear_solver.h"
+#include "splitfusion/lib/energy/node_order.h"
 
 namespace splitfusion {
 namespace {
 
 using ScalarMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor>;
-
-/// New places of the nodes: approximate minimum degree of the node pattern.
-std::vector<int> OrderNodes(const SymmetricBlockMatrix& matrix) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int row = 0; row < matrix.size(); ++row) {
-    for (int k = matrix.row_begin()[row]; k < matrix.row_begin()[row + 1];
-         ++k) {
-      entries.emplace_back(row, matrix.columns()[k], 1);
-    }
-  }
-  ScalarMatrix pattern(matrix.size(), matrix.size());
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> inverse;
-  Eigen::AMDOrdering<int>()(pattern.selfadjointView<Eigen::Upper>(), inverse);
-  std::vector<int> places(matrix.size());
-  for (int i = 0; i < matrix.size(); ++i) places[inverse.indices()[i]] = i;
-  return places;
-}
 
 /// The lower triangle of a block matrix with reordered nodes, for CHOLMOD.
 class ReorderedMatrix {

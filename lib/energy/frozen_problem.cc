@@ -298,11 +298,12 @@ SurfaceProblem FrozenProblem::View() const {
   view.initial_radius = initial_radius;
   view.lost = AddressOf(lost);
   view.tracks = AddressOf(tracks);
+  view.surface = surface;
   return view;
 }
 
-FrozenProblem Freeze(const SurfaceProblem& problem,
-                     const DeformationGraph& graph) {
+FrozenProblem CopyProblem(const SurfaceProblem& problem,
+                          const DeformationGraph& graph) {
   FrozenProblem frozen;
   frozen.surface = problem.surface;
   frozen.energy = problem.energy;
@@ -314,6 +315,12 @@ FrozenProblem Freeze(const SurfaceProblem& problem,
   frozen.lost = CopyOf(problem.lost);
   frozen.tracks = CopyOf(problem.tracks);
   frozen.before = CopyOf(problem.before);
+  return frozen;
+}
+
+FrozenProblem Freeze(const SurfaceProblem& problem,
+                     const DeformationGraph& graph) {
+  FrozenProblem frozen = CopyProblem(problem, graph);
   frozen.start = EvaluateStart(problem, graph);
   CheckComplete(frozen, frozen.start.terms);
   return frozen;

@@ -44,6 +44,10 @@ struct FrozenProblem {
   SurfaceProblem View() const;
 };
 
+/// Copies a problem with the graph; nothing is evaluated.
+FrozenProblem CopyProblem(const SurfaceProblem& problem,
+                          const DeformationGraph& graph);
+
 /// Copies a problem and evaluates its start.
 ///
 /// @throw InputError if a term has another cost without the live frame, which

@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_REPORT_FRAME_REPORT_H_
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,19 @@ struct TrackingRound {
   SolverReport solver;            ///< The minimisation after it.
 };
 
+/// How well a solve holds a surface, see NodeCovariance.
+struct HoldReport {
+  int nodes = 0;            ///< Of the solve.
+  int held_by_prior = 0;    ///< Nodes that no data touch.
+  double median_sigma = 0;  ///< Of the vertices' deviations, metres.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(nodes, held_by_prior, median_sigma);
+  }
+};
+
 /// What happened to one surface in one frame.
 struct SurfaceReport {
   int id = 0;                               ///< 0 is the background.
@@ -40,6 +54,7 @@ struct SurfaceReport {
   int refuted_nodes = 0;    ///< Nodes whose parts were forgotten.
   int vertices = 0;         ///< Of the mesh.
   double residual_rms = 0;  ///< Point-to-plane, last round, metres.
+  std::optional<HoldReport> hold;     ///< If covariances were asked for.
   std::vector<TrackingRound> rounds;  ///< In order of execution.
   double render_seconds = 0;          ///< Rendering of the model.
   double associate_seconds = 0;       ///< Pairs of points.

@@ -41,12 +41,15 @@ void to_json(Json& json, const SolverReport& solver) {
 }
 
 void to_json(Json& json, const TrackingRound& round) {
-  json = {{"stage", round.stage},
-          {"stride", round.stride},
-          {"anneal", round.anneal},
-          {"association", round.association},
-          {"lost_pairs", round.lost_pairs},
-          {"solver", round.solver}};
+  json = {{"stage", round.stage},           {"stride", round.stride},
+          {"anneal", round.anneal},         {"association", round.association},
+          {"lost_pairs", round.lost_pairs}, {"solver", round.solver}};
+}
+
+void to_json(Json& json, const HoldReport& hold) {
+  json = {{"nodes", hold.nodes},
+          {"held_by_prior", hold.held_by_prior},
+          {"median_sigma", hold.median_sigma}};
 }
 
 void to_json(Json& json, const SurfaceReport& surface) {
@@ -71,6 +74,7 @@ void to_json(Json& json, const SurfaceReport& surface) {
             {"solve", surface.solve_seconds},
             {"fuse", surface.fuse_seconds},
             {"mesh", surface.mesh_seconds}}}};
+  if (surface.hold) json["hold"] = *surface.hold;
 }
 
 void to_json(Json& json, const SplitDecision& decision) {

@@ -11,6 +11,9 @@ namespace splitfusion {
 /// solver's iterations appear as their number (`iterations.csv` has them).
 nlohmann::ordered_json ToJson(const FrameReport& report);
 
+/// The object `hold` of `frames.jsonl` and `summary.json`.
+void to_json(nlohmann::ordered_json& json, const HoldReport& hold);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_REPORT_REPORT_JSON_H_

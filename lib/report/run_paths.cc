@@ -41,6 +41,11 @@ std::string RunPaths::Problem(int frame, int surface, bool first) const {
                (first ? "_first.h5" : ".h5"));
 }
 
+std::string RunPaths::Uncertainty(int frame, int surface) const {
+  return Below("uncertainty/" + FrameName(frame) +
+               cv::format("_%03d.ply", surface));
+}
+
 std::string RunPaths::Surface(int id, const std::string& label) const {
   return Below("surfaces/" + SurfaceName(id, label));
 }
@@ -60,13 +65,13 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
 
 bool RunPaths::IsOfRun(const std::string& name) {
   const RunPaths here("");
-  const std::array<std::string, 17> names = {
+  const std::array<std::string, 18> names = {
       here.Marker(),     here.Checkpoint(),  "checkpoints",
       here.Options(),    here.Calibration(), here.Trajectory(),
       here.Frames(),     here.Iterations(),  here.Summary(),
       here.Evaluation(), here.HtmlReport(),  here.Pictures(),
       here.Detections(), "solver",           "masks",
-      "surfaces",        "problems"};
+      "surfaces",        "problems",         "uncertainty"};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 

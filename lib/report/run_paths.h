@@ -36,6 +36,8 @@ class RunPaths {
   /// RUN/problems/FRAME_NNN.h5, the last solve of surface NNN in a frame; or
   /// FRAME_NNN_first.h5, the first one of more than one node.
   std::string Problem(int frame, int surface, bool first) const;
+  /// RUN/uncertainty/FRAME_NNN.ply, surface NNN in a frame.
+  std::string Uncertainty(int frame, int surface) const;
   /// RUN/solver/FRAME.txt
   std::string SolverReport(int frame) const {
     return Below("solver/" + FrameName(frame) + ".txt");

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "splitfusion/lib/base/median.h"
+#include "splitfusion/lib/report/report_json.h"
 
 namespace splitfusion {
 namespace {
@@ -42,23 +43,25 @@ std::string Trouble(const SurfaceSummary& surface) {
 }
 
 Json ToJson(const SurfaceSummary& surface) {
-  return {{"id", surface.id},
-          {"label", surface.label},
-          {"kind", ToString(surface.kind)},
-          {"first_frame", surface.first_frame},
-          {"frames", surface.frames},
-          {"nodes", surface.nodes},
-          {"node_spacing", surface.node_spacing},
-          {"vertices", surface.vertices},
-          {"lost", surface.lost},
-          {"occluded", surface.occluded},
-          {"lost_frames", surface.lost.size()},
-          {"occluded_frames", surface.occluded.size()},
-          {"refound_frames", surface.refound.size()},
-          {"refound", surface.refound},
-          {"reanchored", surface.reanchored},
-          {"away_since",
-           surface.away_since >= 0 ? Json(surface.away_since) : Json()}};
+  Json json = {{"id", surface.id},
+               {"label", surface.label},
+               {"kind", ToString(surface.kind)},
+               {"first_frame", surface.first_frame},
+               {"frames", surface.frames},
+               {"nodes", surface.nodes},
+               {"node_spacing", surface.node_spacing},
+               {"vertices", surface.vertices},
+               {"lost", surface.lost},
+               {"occluded", surface.occluded},
+               {"lost_frames", surface.lost.size()},
+               {"occluded_frames", surface.occluded.size()},
+               {"refound_frames", surface.refound.size()},
+               {"refound", surface.refound},
+               {"reanchored", surface.reanchored},
+               {"away_since",
+                surface.away_since >= 0 ? Json(surface.away_since) : Json()}};
+  if (surface.hold) json["hold"] = *surface.hold;
+  return json;
 }
 
 Json SecondsPerFrame(const RunSummary& summary) {
@@ -83,6 +86,18 @@ std::string VerdictLine(const RunSummary& summary) {
          Frames(summary.frames) + ", " + std::to_string(surfaces) +
          (surfaces == 1 ? " surface" : " surfaces") +
          (troubles.empty() ? ", none lost or occluded" : troubles);
+}
+
+std::vector<std::string> HoldLines(const RunSummary& summary) {
+  std::vector<std::string> lines;
+  for (const SurfaceSummary& surface : summary.surfaces) {
+    if (!surface.hold || surface.hold->held_by_prior == 0) continue;
+    lines.push_back(std::to_string(surface.hold->held_by_prior) + " of " +
+                    std::to_string(surface.hold->nodes) + " nodes of surface " +
+                    std::to_string(surface.id) + " (" + surface.label +
+                    ") are held by the prior alone");
+  }
+  return lines;
 }
 
 Json ToJson(const RunSummary& summary) {
@@ -145,6 +160,7 @@ bool SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
     surface.nodes = report.nodes;
     surface.node_spacing = report.node_spacing;
   }
+  if (report.hold) surface.hold = report.hold;
   if (report.vertices > 0) surface.vertices = report.vertices;
   return refound;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,12 +33,14 @@ struct SurfaceSummary {
   /// The frame in which it was lost or occluded and after which it was not
   /// tracked again to the end of the run; -1 = it was.
   int away_since = -1;
+  /// Of the last frame that tells.
+  std::optional<HoldReport> hold;
 
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
     (*archive)(id, label, kind, first_frame, frames, nodes, node_spacing,
-               vertices, lost, occluded, refound, reanchored, away_since);
+               vertices, lost, occluded, refound, reanchored, away_since, hold);
   }
 };
 
@@ -67,6 +70,11 @@ struct RunSummary {
 /// One line that says whether everything was followed: frames, surfaces, and
 /// those that were lost, occluded and found again or not.
 std::string VerdictLine(const RunSummary& summary);
+
+/// A line of every surface parts of which no data held in the last frame that
+/// tells: "17 of 310 nodes of surface 1 (person) are held by the prior alone".
+/// Empty without covariances.
+std::vector<std::string> HoldLines(const RunSummary& summary);
 
 /// Text of `summary.json` as a value; keys in docs/report_format.md.
 nlohmann::ordered_json ToJson(const RunSummary& summary);

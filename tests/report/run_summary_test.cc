@@ -111,6 +111,27 @@ TEST(SummaryBuilder, CountsWhoWasLostOccludedAndFoundAgain) {
   EXPECT_TRUE(json["away_since"].is_null());
 }
 
+TEST(HoldLines, SayWhatNoDataHoldInTheLastFrameThatTells) {
+  SummaryBuilder builder;
+  for (int frame = 0; frame < 4; ++frame) {
+    FrameReport report = SampleReport(frame);
+    // Every other frame tells.
+    if (frame % 2 == 0) report.surfaces[1].hold = {310, 15 + frame, 0.001};
+    builder.Add(report);
+  }
+  RunSummary summary = builder.Build();
+  const SurfaceSummary& person = summary.surfaces[1];
+  EXPECT_EQ(HoldLines(summary),
+            std::vector<std::string>{
+                "17 of 310 nodes of surface " + std::to_string(person.id) +
+                " (" + person.label + ") are held by the prior alone"});
+  const auto json = ToJson(summary);
+  EXPECT_EQ(json["surfaces"][1]["hold"]["held_by_prior"], 17);
+  EXPECT_FALSE(json["surfaces"][0].contains("hold"));
+  summary.surfaces[1].hold->held_by_prior = 0;
+  EXPECT_TRUE(HoldLines(summary).empty());
+}
+
 TEST(VerdictLine, SaysWhoWasNotFoundAgain) {
   EXPECT_EQ(VerdictLine(Through({"born", "tracked"})),
             "2 frames, 2 surfaces, none lost or occluded");
