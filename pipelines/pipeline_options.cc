@@ -5,6 +5,7 @@ namespace splitfusion {
 PipelineOptions::PipelineOptions() {
   background.tsdf.voxel_size = 0.010;
   background.tsdf.truncation = 0.040;
+  background.tsdf.reach_sigmas = 3;
   object.tsdf.voxel_size = 0.005;
   object.tsdf.truncation = 0.030;
   object.min_piece_area = 0.0025;

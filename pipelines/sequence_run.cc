@@ -276,10 +276,11 @@ void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
   const Stopwatch writing;
   work_->fusion.Finish();
   for (const auto& [id, surface] : work_->fusion.surfaces()) {
-    WriteSurface(directory_->paths(), *surface, options_.warped);
-    directory_->SetSurfaceSize(
-        id, surface->graph().size(),
-        static_cast<int>(surface->mesh().vertices.size()));
+    const StretchedArea stretch =
+        WriteSurface(directory_->paths(), *surface, options_.warped);
+    directory_->SetWritten(
+        id, {surface->graph().size(),
+             static_cast<int>(surface->mesh().vertices.size()), stretch});
   }
   directory_->AddWritingSeconds(writing.Seconds());
   directory_->Finish({status, error, folder_.marker().resumed_at,

@@ -13,7 +13,8 @@ namespace splitfusion {
 AnimatedSurface::AnimatedSurface(RecordedSurface surface)
     : surface_(std::move(surface)),
       index_(surface_.graph, surface_.neighbors_per_point),
-      skinnings_(index_.Skin(surface_.mesh.vertices)) {}
+      skinnings_(index_.Skin(surface_.mesh.vertices)),
+      stretched_from_(StretchedFrom(surface_.mesh)) {}
 
 bool AnimatedSurface::HasMotions(int frame) const {
   return surface_.motions.Find(frame) != nullptr;
@@ -64,10 +65,6 @@ std::vector<Eigen::Vector3f> AnimatedSurface::VerticesAt(int frame) const {
   return vertices;
 }
 
-std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesAt(int frame) const {
-  return SeenTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
-}
-
 std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesInUse(int frame) const {
   std::vector<Eigen::Vector3i> triangles;
   for (const Eigen::Vector3i& t : surface_.mesh.triangles) {
@@ -78,10 +75,13 @@ std::vector<Eigen::Vector3i> AnimatedSurface::TrianglesInUse(int frame) const {
   return triangles;
 }
 
-TriangleMesh AnimatedSurface::MeshAt(int frame) const {
+TriangleMesh AnimatedSurface::MeshAt(int frame, StretchedArea* stretch) const {
   TriangleMesh mesh;
-  mesh.triangles = TrianglesAt(frame);
+  mesh.triangles =
+      SeenTriangles(surface_.mesh, skinnings_, surface_.graph, frame);
   mesh.vertices = VerticesAt(frame);
+  const StretchedArea found = CutStretched(stretched_from_, &mesh);
+  if (stretch != nullptr) *stretch = found;
   return mesh;
 }
 

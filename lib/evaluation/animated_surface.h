@@ -6,6 +6,7 @@
 
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
+#include "splitfusion/lib/geometry/stretched_area.h"
 
 namespace splitfusion {
 
@@ -40,15 +41,14 @@ class AnimatedSurface {
   /// metres.
   std::vector<Eigen::Vector3f> VerticesAt(int frame) const;
 
-  /// Triangles of the mesh that had been seen by a frame (SeenTriangles).
-  std::vector<Eigen::Vector3i> TrianglesAt(int frame) const;
-
   /// Triangles of the parts of the model that are in use in a frame, also what
   /// was seen only later.
   std::vector<Eigen::Vector3i> TrianglesInUse(int frame) const;
 
-  /// Both of them, as warped/FRAME.ply has them; no normals, no colours.
-  TriangleMesh MeshAt(int frame) const;
+  /// The mesh as warped/FRAME.ply has it: what had been seen by then
+  /// (SeenTriangles), without triangles that are stretched; no normals, no
+  /// colours. `stretch`, if given: what there was before these were cut.
+  TriangleMesh MeshAt(int frame, StretchedArea* stretch = nullptr) const;
 
   /// Skinning of a canonical point, metres.
   Skinning Skin(const Eigen::Vector3f& point) const {
@@ -59,6 +59,7 @@ class AnimatedSurface {
   RecordedSurface surface_;
   SkinningIndex index_;
   std::vector<Skinning> skinnings_;  // Of the vertices.
+  double stretched_from_;            // Metres.
 };
 
 /// All surfaces of a run, by id.

@@ -69,11 +69,12 @@ class Inspector {
   void AddSurface(const AnimatedSurface& surface, const cv::Mat_<float>& depth,
                   const cv::Mat_<std::uint16_t>& labels,
                   FrameInspection* result) const {
-    const TriangleMesh mesh = surface.MeshAt(result->frame);
+    StretchedArea stretch;
+    const TriangleMesh mesh = surface.MeshAt(result->frame, &stretch);
     if (mesh.triangles.empty()) return;
     const int id = surface.recorded().id;
     FrameShape& shape = result->shapes[id];
-    shape.stretch = MeasureStretch(mesh);
+    shape.stretch = stretch;
     if (depth.empty()) return;
     shape.stray = MeasureStray(mesh, live_->camera(), depth);
     if (labels.empty()) return;

@@ -32,11 +32,11 @@ ModelView RenderModelView(const std::vector<const AnimatedSurface*>& surfaces,
   raster.Clear(camera);
   std::vector<int> ends;
   for (const AnimatedSurface* surface : surfaces) {
-    const std::vector<Eigen::Vector3i> triangles = surface->TrianglesAt(frame);
+    const TriangleMesh mesh = surface->MeshAt(frame);
     const int first = ends.empty() ? 0 : ends.back();
-    RasterizeTriangles(surface->VerticesAt(frame), triangles, camera,
+    RasterizeTriangles(mesh.vertices, mesh.triangles, camera,
                        /*cull_back_faces=*/true, first, &raster);
-    ends.push_back(first + static_cast<int>(triangles.size()));
+    ends.push_back(first + static_cast<int>(mesh.triangles.size()));
   }
   return {raster.depth, ToSurfaceIds(raster.triangle, ends, surfaces)};
 }

@@ -1,11 +1,11 @@
 #include "splitfusion/lib/evaluation/posed_model.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/geometry/depth_noise.h"
+#include "splitfusion/lib/geometry/triangle_corners.h"
 
 namespace splitfusion {
 namespace {
@@ -18,24 +18,6 @@ constexpr int kMargin = 2;
 constexpr float kSampling = 2;
 /// Samples along an edge, at most.
 constexpr int kMaxSteps = 200;
-
-/// Corners of a triangle.
-struct Corners {
-  Eigen::Vector3f a, b, c;
-
-  Corners(const TriangleMesh& mesh, const Eigen::Vector3i& t)
-      : a(mesh.vertices[t[0]]),
-        b(mesh.vertices[t[1]]),
-        c(mesh.vertices[t[2]]) {}
-
-  /// Twice the area, along the outward normal.
-  Eigen::Vector3f Cross() const { return (b - a).cross(c - a); }
-  double Area() const { return 0.5 * Cross().norm(); }
-  float LongestEdge() const {
-    return std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  }
-  float Nearest() const { return std::min({a.z(), b.z(), c.z()}); }
-};
 
 /// Live depth at the pixel of a point; 0 without depth or outside of the image
 /// but for `margin` pixels.
@@ -65,7 +47,7 @@ class Marker {
   }
 
   /// Adds points inside of a triangle, if its corners are far apart.
-  void AddInside(const Corners& corners) {
+  void AddInside(const TriangleCorners& corners) {
     if (!(corners.Nearest() > kNearest)) return;
     const float pixels = static_cast<float>(camera_.fx) *
                          corners.LongestEdge() / corners.Nearest();
@@ -95,26 +77,11 @@ class Marker {
 
 }  // namespace
 
-StretchedArea MeasureStretch(const TriangleMesh& mesh) {
-  StretchedArea result;
-  for (const Eigen::Vector3i& triangle : mesh.triangles) {
-    const Corners corners(mesh, triangle);
-    const double area = corners.Area();
-    const double longest = corners.LongestEdge();
-    result.area += area;
-    result.longest_edge = std::max(result.longest_edge, longest);
-    if (longest <= kStretchedEdge) continue;
-    result.stretched += area;
-    ++result.triangles;
-  }
-  return result;
-}
-
 StrayArea MeasureStray(const TriangleMesh& mesh, const PinholeCamera& camera,
                        const cv::Mat_<float>& live) {
   StrayArea result;
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
-    const Corners corners(mesh, triangle);
+    const TriangleCorners corners(mesh, triangle);
     const Eigen::Vector3f centre = (corners.a + corners.b + corners.c) / 3;
     if (!(centre.z() > kNearest) || corners.Cross().dot(centre) >= 0) continue;
     cv::Point pixel;
@@ -137,7 +104,7 @@ cv::Mat_<std::uint8_t> ShownPixels(const TriangleMesh& mesh,
   std::vector<char> used(mesh.vertices.size(), false);
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
     for (int k = 0; k < 3; ++k) used[triangle[k]] = true;
-    marker.AddInside(Corners(mesh, triangle));
+    marker.AddInside(TriangleCorners(mesh, triangle));
   }
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (used[i]) marker.Add(mesh.vertices[i]);

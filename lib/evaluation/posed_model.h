@@ -10,24 +10,6 @@
 
 namespace splitfusion {
 
-/// Edges longer than this are stretched, metres: a triangle of a new mesh has
-/// edges no longer than 1.8 voxels.
-constexpr double kStretchedEdge = 0.03;
-
-/// Triangles of a mesh that are stretched.
-struct StretchedArea {
-  double area = 0;          ///< Of the whole mesh, square metres.
-  double stretched = 0;     ///< Of triangles with an edge > kStretchedEdge.
-  int triangles = 0;        ///< Number of these.
-  double longest_edge = 0;  ///< Metres.
-
-  /// `stretched` / `area`; 0 without area.
-  double Share() const { return area > 0 ? stretched / area : 0; }
-};
-
-/// Measures the triangles of a mesh (metres).
-StretchedArea MeasureStretch(const TriangleMesh& mesh);
-
 /// Depth of the model behind the live depth from which on it is stray, metres,
 /// but at least three standard deviations of the depth noise.
 constexpr double kStrayMargin = 0.02;

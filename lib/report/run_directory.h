@@ -67,9 +67,9 @@ class RunDirectory {
   /// `seconds_writing`.
   void AddWritingSeconds(double seconds) { seconds_writing_ += seconds; }
 
-  /// States nodes and vertices of a surface as they were written at the end.
-  void SetSurfaceSize(int id, int nodes, int vertices) {
-    builder_.SetSurfaceSize(id, nodes, vertices);
+  /// States what was written of a surface at the end.
+  void SetWritten(int id, const WrittenSurface& written) {
+    builder_.SetWritten(id, written);
   }
 
   /// Summary of the frames so far.

@@ -60,6 +60,7 @@ Json ToJson(const SurfaceSummary& surface) {
                {"reanchored", surface.reanchored},
                {"away_since",
                 surface.away_since >= 0 ? Json(surface.away_since) : Json()}};
+  if (surface.stretched) json["stretched"] = *surface.stretched;
   if (surface.hold) json["hold"] = *surface.hold;
   return json;
 }
@@ -165,11 +166,14 @@ bool SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   return refound;
 }
 
-void SummaryBuilder::SetSurfaceSize(int id, int nodes, int vertices) {
+void SummaryBuilder::SetWritten(int id, const WrittenSurface& written) {
   const auto found = surfaces_.find(id);
   if (found == surfaces_.end()) return;
-  found->second.nodes = nodes;
-  found->second.vertices = vertices;
+  found->second.nodes = written.nodes;
+  found->second.vertices = written.vertices;
+  if (written.stretch.area > 0) {
+    found->second.stretched = written.stretch.Share();
+  }
 }
 
 RunSummary SummaryBuilder::Build() const {

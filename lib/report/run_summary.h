@@ -9,10 +9,18 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/geometry/stretched_area.h"
 #include "splitfusion/lib/report/frame_parts.h"
 #include "splitfusion/lib/report/frame_report.h"
 
 namespace splitfusion {
+
+/// What was written of a surface at the end.
+struct WrittenSurface {
+  int nodes = 0;          ///< Of the graph.
+  int vertices = 0;       ///< Of the mesh.
+  StretchedArea stretch;  ///< Of all warped meshes, see WriteSurface().
+};
 
 /// One surface over a whole run.
 struct SurfaceSummary {
@@ -33,6 +41,9 @@ struct SurfaceSummary {
   /// The frame in which it was lost or occluded and after which it was not
   /// tracked again to the end of the run; -1 = it was.
   int away_since = -1;
+  /// Share of the area of the warped meshes that was stretched, and cut;
+  /// none where no warped mesh was written.
+  std::optional<double> stretched;
   /// Of the last frame that tells.
   std::optional<HoldReport> hold;
 
@@ -85,9 +96,9 @@ class SummaryBuilder {
   /// Adds the next frame.
   void Add(const FrameReport& report);
 
-  /// Replaces nodes and vertices of a surface by those that were written at the
-  /// end. Unknown ids are ignored.
-  void SetSurfaceSize(int id, int nodes, int vertices);
+  /// Takes what was written of a surface at the end for what was reported.
+  /// Unknown ids are ignored.
+  void SetWritten(int id, const WrittenSurface& written);
 
   /// Statistics of the frames so far; preset, versions, writing time and memory
   /// are left to the caller.

@@ -29,8 +29,8 @@ TriangleMesh WarpMesh(const SurfaceModel& model,
 
 }  // namespace
 
-void WriteSurface(const RunPaths& paths, const Surface& surface,
-                  const WarpedOutput& warped) {
+StretchedArea WriteSurface(const RunPaths& paths, const Surface& surface,
+                           const WarpedOutput& warped) {
   const std::string folder = paths.Surface(surface.id(), surface.label());
   std::error_code ignored;  // Files that cannot be written say so.
   std::filesystem::create_directory(std::filesystem::path(folder).parent_path(),
@@ -41,14 +41,19 @@ void WriteSurface(const RunPaths& paths, const Surface& surface,
   const int neighbors = surface.graph_options().neighbors_per_point;
   WriteGraph(folder + "/graph.json", model.graph, neighbors);
   WriteMotions(folder + "/motions.bin", model.history);
-  if (surface.is_ray_cast() || warped.every <= 0) return;
+  StretchedArea cut;
+  if (surface.is_ray_cast() || warped.every <= 0) return cut;
+  const double stretched_from = StretchedFrom(model.mesh);
   const std::vector<Skinning> skinning =
       SkinningIndex(model.graph, neighbors).Skin(model.mesh.vertices);
   for (const FrameMotions& motions : model.history.frames) {
     if (motions.frame % warped.every != 0) continue;
+    TriangleMesh mesh = WarpMesh(model, skinning, motions, warped.whole);
+    cut += CutStretched(stretched_from, &mesh);
     WritePly(paths.WarpedMesh(surface.id(), surface.label(), motions.frame),
-             WarpMesh(model, skinning, motions, warped.whole));
+             mesh);
   }
+  return cut;
 }
 
 }  // namespace splitfusion

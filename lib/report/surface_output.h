@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_REPORT_SURFACE_OUTPUT_H_
 #define SPLITFUSION_LIB_REPORT_SURFACE_OUTPUT_H_
 
+#include "splitfusion/lib/geometry/stretched_area.h"
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/report/run_paths.h"
 
@@ -17,11 +18,13 @@ struct WarpedOutput {
 /// `warped.every`-th frame since its birth (0 = none): the final mesh carried
 /// into that frame's camera, so that vertex i is the same surface point in all
 /// of them; unless `warped.whole`, with no more than had been seen by then
-/// (SeenTriangles). The mesh must be up to date.
+/// (SeenTriangles), and without triangles that are stretched. Returns what
+/// there was of these in all warped meshes together. The mesh must be up to
+/// date.
 ///
 /// @throw InputError if a file cannot be written.
-void WriteSurface(const RunPaths& paths, const Surface& surface,
-                  const WarpedOutput& warped);
+StretchedArea WriteSurface(const RunPaths& paths, const Surface& surface,
+                           const WarpedOutput& warped);
 
 }  // namespace splitfusion
 

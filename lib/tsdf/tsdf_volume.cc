@@ -135,6 +135,9 @@ void TsdfOptions::List(OptionList* list) {
                    NumberText(50 * voxel_size) + " metres)");
   list->Number("max_weight", &max_weight, Range::AtLeast(1), "",
                "Largest weight of a voxel in the running mean.");
+  list->Number("reach_sigmas", &reach_sigmas, {0, 10}, "",
+               "Voxels are written so many standard deviations of the depth "
+               "noise behind a measurement, but at least the truncation.");
 }
 
 void TsdfOptions::Check() const { CheckOptions(*this); }

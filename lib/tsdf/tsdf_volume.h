@@ -21,6 +21,11 @@ struct TsdfOptions {
   double voxel_size = 0.01;  ///< Metres.
   double truncation = 0.04;  ///< Metres; at least 2 voxels.
   double max_weight = 64;    ///< Cap of the running mean's weight.
+  /// Voxels are written so many standard deviations of the depth noise behind
+  /// a measurement, if that is more than the truncation: else the part of the
+  /// noise that is cut off there moves a surface away. Of thin things, which
+  /// are seen from behind, too, it would reach the other side.
+  double reach_sigmas = 0;
   /// False: distances alone. Takes two thirds of the memory; meshes are black.
   bool has_color = true;
 

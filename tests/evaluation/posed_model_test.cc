@@ -29,25 +29,6 @@ TriangleMesh Plane(float z) {
 
 cv::Mat_<float> Live(float z) { return cv::Mat_<float>(101, 101, z); }
 
-TEST(MeasureStretch, KnowsTheShareOfAStretchedTriangle) {
-  TriangleMesh mesh = Plane(1);
-  StretchedArea area = MeasureStretch(mesh);
-  EXPECT_NEAR(area.area, 0.04, 1e-6);
-  EXPECT_EQ(area.triangles, 0);
-  EXPECT_EQ(area.Share(), 0);
-  EXPECT_NEAR(area.longest_edge, 0.0283, 1e-4);
-  // One more, of 0.1 x 0.2 / 2 = 0.01 square metres.
-  mesh.vertices.insert(mesh.vertices.end(),
-                       {{1, 0, 1}, {1.1f, 0, 1}, {1, 0.2f, 1}});
-  const int n = static_cast<int>(mesh.vertices.size());
-  mesh.triangles.emplace_back(n - 3, n - 2, n - 1);
-  area = MeasureStretch(mesh);
-  EXPECT_EQ(area.triangles, 1);
-  EXPECT_NEAR(area.Share(), 0.2, 1e-5);
-  EXPECT_NEAR(area.longest_edge, 0.2236, 1e-4);
-  EXPECT_EQ(MeasureStretch({}).Share(), 0);
-}
-
 TEST(MeasureStray, CountsWhatLiesBehindTheLiveDepth) {
   for (const auto& [live, share] : {std::pair{1.0f, 0.0},
                                     {0.99f, 0.0},

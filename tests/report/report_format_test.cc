@@ -127,7 +127,7 @@ class ReportFormat : public testing::Test {
                                (*folder_ / "sequence"));
     const ProgramResult run = RunProgram("sf_run",
                                          "--covariance=1 --pictures_every=0 "
-                                         "--warped_every=0 --sequence=" +
+                                         "--warped_every=1 --sequence=" +
                                              (*folder_ / "sequence") +
                                              " --output=" + (*folder_ / "run"));
     EXPECT_EQ(run.exit_code, 0) << run.errors;

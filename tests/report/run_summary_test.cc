@@ -177,12 +177,18 @@ TEST(SummaryBuilder, TakesTheSpacingOfTheLastGraph) {
 TEST(SummaryBuilder, TakesTheSizesThatWereWritten) {
   SummaryBuilder builder;
   builder.Add(SampleReport(0));
-  builder.SetSurfaceSize(1, 77, 12345);
-  builder.SetSurfaceSize(9, 1, 1);  // Never reported.
+  StretchedArea stretch;
+  stretch.area = 4;
+  stretch.stretched = 1;
+  builder.SetWritten(1, {77, 12345, stretch});
+  builder.SetWritten(9, {1, 1, stretch});  // Never reported.
   const RunSummary summary = builder.Build();
   ASSERT_EQ(summary.surfaces.size(), 2u);
   EXPECT_EQ(summary.surfaces[1].nodes, 77);
   EXPECT_EQ(summary.surfaces[1].vertices, 12345);
+  const auto surfaces = ToJson(summary)["surfaces"];
+  EXPECT_EQ(surfaces[1]["stretched"], 0.25);
+  EXPECT_FALSE(surfaces[0].contains("stretched"));  // No warped meshes.
 }
 
 TEST(SummaryBuilder, IsFiniteWithoutFrames) {

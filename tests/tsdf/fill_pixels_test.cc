@@ -23,6 +23,7 @@ FusionView ViewOf(float refutation) {
   FusionView view = {};
   view.truncation = kTruncation;
   view.refutation = refutation;
+  view.reach_sigmas = 3;
   view.noise.least = 0.01;
   view.noise.growth = 0;
   return view;

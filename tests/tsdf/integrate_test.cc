@@ -125,12 +125,13 @@ TEST(IntegrateRigid, WhatIsPassedOverWouldNotHaveChanged) {
 }
 
 /// Mean z-depth of the mesh of a wall at z-depth `depth` after many frames of
-/// Gaussian noise, metres.
-double NoisyWall(double depth) {
+/// Gaussian noise, metres; `reach`: TsdfOptions::reach_sigmas.
+double NoisyWall(double depth, double reach) {
   std::mt19937 random(3);
   const PinholeCamera camera = SmallCamera();
   TsdfOptions options;
   options.voxel_size = 0.02;
+  options.reach_sigmas = reach;
   options.has_color = false;
   TsdfVolume volume(options);
   const auto sigma = static_cast<float>(camera.noise.Sigma(depth));
@@ -149,8 +150,9 @@ double NoisyWall(double depth) {
 
 TEST(IntegrateRigid, NoiseBeyondTheTruncationMovesNoSurface) {
   for (const double depth : {1.5, 3.5, 4.5}) {
-    EXPECT_NEAR(NoisyWall(depth), depth, 0.0005) << depth;
+    EXPECT_NEAR(NoisyWall(depth, 3), depth, 0.0005) << depth;
   }
+  EXPECT_GT(NoisyWall(4.5, 0), 4.503);  // The noise is 3.3 cm there.
 }
 
 TEST(IntegrateRigid, BehindTheCameraNothingChanges) {

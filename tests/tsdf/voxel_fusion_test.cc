@@ -22,7 +22,7 @@ namespace {
 
 constexpr float kVoxel = 0.01f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-const TsdfOptions kOptions = {kVoxel, 0.04, 20};
+const TsdfOptions kOptions = {kVoxel, 0.04, 20, /*reach_sigmas=*/3};
 
 /// A block's voxels.
 struct Block {

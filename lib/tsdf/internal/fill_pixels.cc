@@ -19,9 +19,8 @@ void FillPixels(const FusionView& view, const float* __restrict depth,
   constexpr auto kWrites = static_cast<std::uint8_t>(PixelRole::kWrite);
   constexpr auto kCarves = static_cast<std::uint8_t>(PixelRole::kCarve);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const float truncation = view.truncation;
+  const FusionView local = view;  // Which no pixel's address can be that of.
   const bool refutes = view.refutation > 0;
-  const DepthNoise noise = view.noise;
   for (int u = 0; u < count; ++u) {
     const bool writes = role[u] == kWrites;
     const bool counts = (writes | (role[u] == kCarves)) & (depth[u] > 0);
@@ -29,8 +28,9 @@ void FillPixels(const FusionView& view, const float* __restrict depth,
     const float confidence = counts ? weight[u] : 0;
     pixels[u].depth = known;
     pixels[u].weight = writes ? confidence : -confidence;
-    const float behind = ReachBehind(depth[u], truncation, noise);
-    const float reaches = known + ((writes | refutes) ? behind : -truncation);
+    const float behind = ReachBehind(local, depth[u]);
+    const float reaches =
+        known + ((writes | refutes) ? behind : -local.truncation);
     reach[u] = reach[u] < reaches ? reaches : reach[u];
   }
 }

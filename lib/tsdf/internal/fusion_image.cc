@@ -72,6 +72,7 @@ FusionImage::FusionImage(const DepthObservation& observation,
            static_cast<float>(options.truncation),
            observation.others_refute ? 1.0f : 0.0f,
            static_cast<float>(options.max_weight),
+           static_cast<float>(options.reach_sigmas),
            camera.noise};
   for (int z = 0; z < 8; ++z) view_.dither[z] = Dither(time, z);
   tbb::parallel_for(0, rows_,

@@ -7,6 +7,7 @@
 
 #include "splitfusion/lib/base/vector_clones.h"
 #include "splitfusion/lib/geometry/camera.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/tsdf/internal/packed_color.h"
 
 namespace splitfusion {
@@ -92,7 +93,7 @@ SPLITFUSION_INLINE int Compare(const FusionView& view, const SeenSlab& at,
   for (int i = 0; i < kSlab; ++i) {
     const FusionPixel pixel = seen.pixel[i];
     const float sdf = pixel.depth - at.z[i];
-    const float behind = -ReachBehind(pixel.depth, truncation, view.noise);
+    const float behind = -ReachBehind(view, pixel.depth);
     const bool counts = sdf > (pixel.weight >= 0 ? behind : truncation);
     // That it is empty in front of what was measured, by more than noise, is
     // certain at any range, other than where a noisy ray ended.

@@ -4,21 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/geometry/depth_noise.h"
 
 namespace splitfusion {
 namespace internal {
-
-/// How far behind a measured depth voxels are written, metres: the truncation,
-/// or where that is more, as far as noise reaches. Distances are clamped at the
-/// truncation both ways. Were those that noise brings beyond it left out behind
-/// the surface, but not before it, the mean would move the surface away: at
-/// noise of half of the truncation by a twentieth of the noise.
-inline float ReachBehind(float depth, float truncation,
-                         const DepthNoise& noise) {
-  return std::max(truncation, kNoiseAlone.At(depth, noise));
-}
 
 /// What one pixel does to the voxels on its ray.
 struct FusionPixel {
@@ -39,8 +28,18 @@ struct FusionView {
   float truncation;  ///< Metres.
   float refutation;  ///< Of the weight of pixels that only carve, 0 or 1.
   float max_weight;
+  float reach_sigmas;  ///< See ReachBehind().
   DepthNoise noise;
 };
+
+/// How far behind a measured depth voxels are written, metres: the truncation,
+/// or as far as noise reaches, if that is more. Distances are clamped at the
+/// truncation both ways. Were those that noise brings beyond it left out behind
+/// the surface, but not before it, the mean would move the surface away: at
+/// noise of half of the truncation by a twentieth of the noise.
+inline float ReachBehind(const FusionView& view, float depth) {
+  return std::max(view.truncation, view.reach_sigmas * view.noise.Sigma(depth));
+}
 
 /// Buffers of the block that is fused into; `color`: packed, of every voxel;
 /// null: there is none.
