@@ -24,7 +24,7 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
       splitter_(camera, labels, options.split),
       point_tracks_(options.point_tracks),
       tracker_(options.tracker, options.solver,
-               ParseEnergy(options.terms, registries.terms),
+               SurfaceEnergies::Parse(options.terms, registries.terms),
                registries.associations, registries.solvers) {
   options_.Check();
   camera_.Check();

@@ -7,8 +7,8 @@
 
 namespace splitfusion {
 
-/// Options of sf_run by key, a flag's name or terms.NAME.KEY, in the order in
-/// which they were given; no key twice.
+/// Options of sf_run by key, a flag's name, terms.NAME.KEY or
+/// CLASS.terms.NAME.KEY, in the order in which they were given; no key twice.
 class Settings {
  public:
   /// Key and value.
