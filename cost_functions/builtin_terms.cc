@@ -1,8 +1,10 @@
 #include "splitfusion/cost_functions/builtin_terms.h"
 
+#include "splitfusion/cost_functions/acceleration.h"
 #include "splitfusion/cost_functions/arap.h"
 #include "splitfusion/cost_functions/color_constancy.h"
 #include "splitfusion/cost_functions/live_to_model.h"
+#include "splitfusion/cost_functions/normal.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
 #include "splitfusion/cost_functions/point_to_point.h"
 #include "splitfusion/cost_functions/projective_depth.h"
@@ -33,6 +35,9 @@ TermRegistry BuiltinTerms() {
                     [] { return std::make_unique<ProjectiveDepthTerm>(); });
   registry.Register("velocity",
                     [] { return std::make_unique<VelocityTerm>(); });
+  registry.Register("acceleration",
+                    [] { return std::make_unique<AccelerationTerm>(); });
+  registry.Register("normal", [] { return std::make_unique<NormalTerm>(); });
   return registry;
 }
 

@@ -17,6 +17,7 @@
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/registries.h"
+#include "splitfusion/pipelines/surface_context.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
@@ -60,11 +61,13 @@ class SplitFusion {
   const PinholeCamera& camera() const { return camera_; }
   /// Options in use.
   const PipelineOptions& options() const { return options_; }
+  /// What is minimised.
+  const SurfaceEnergies& energies() const { return tracker_.energies(); }
   /// Surface ids of the last frame, HxW.
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 10;  // Format.
+  static constexpr std::uint32_t kStateVersion = 11;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -84,10 +87,15 @@ class SplitFusion {
   /// the frame before.
   void FollowPoints(FrameReport* report);
   /// Moves a surface onto its live pixels from where it is predicted; `still`
-  /// as of SurfaceTracker::Track(). Whether it fits.
+  /// as of SurfaceTracker::Track(), `goes_on` as of SurfaceContext. Whether it
+  /// fits.
   bool TrackSurface(const std::vector<ModelSample>& samples,
-                    const Rigid3d& still, Surface* surface,
+                    const Rigid3d& still, bool goes_on, Surface* surface,
                     SurfaceReport* report);
+  /// Has the terms prepare what they keep of the surface.
+  TermContext PrepareTerms(const SurfaceContext& known,
+                           const std::vector<TrackedPoint>& tracks,
+                           const Surface& surface);
   /// Leaves it where it is predicted if the pose of the camera is `given`.
   void TrackBackground(bool given, FrameReport* report);
   /// Every object on its own and at the same time.
@@ -104,7 +112,8 @@ class SplitFusion {
   /// Shifts a surface to where its live pixels are; whether such a place is
   /// found.
   bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
-  bool TrackObject(Surface* surface, SurfaceReport* report);
+  /// `goes_on`: as of SurfaceContext.
+  bool TrackObject(bool goes_on, Surface* surface, SurfaceReport* report);
   /// Tracks a surface that is lost or was occluded from where its live pixels
   /// are; leaves it where it was if that fails.
   bool TrackWhereSeen(Surface* surface, SurfaceReport* report);
@@ -134,6 +143,9 @@ class SplitFusion {
   SurfaceTracker tracker_;
   SurfaceMap surfaces_;
   Trajectory trajectory_;
+  /// What the terms of a surface keep of it; of surfaces that were tracked.
+  std::map<int, TermStates> term_states_;
+  FrameFacts frame_;  ///< That in hand.
   LiveView live_;
   MeshRendering rendering_;
   ModelMap background_map_;

@@ -23,7 +23,8 @@
 #include "splitfusion/lib/report/run_paths.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 
-DEFINE_string(set, "", "KEY=VALUE; ...: any flags, or terms.arap.weight=4.");
+DEFINE_string(set, "",
+              "KEY=VALUE; ...: any flags, or [CLASS.]terms.arap.weight=4.");
 DEFINE_string(energy, "", "Terms of a paper, by name; see docs/terms.md.");
 DECLARE_string(class_names);
 DECLARE_int32(at);

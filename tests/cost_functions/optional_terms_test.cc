@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "splitfusion/cost_functions/acceleration.h"
+#include "splitfusion/cost_functions/normal.h"
 #include "splitfusion/cost_functions/point_to_point.h"
 #include "splitfusion/cost_functions/projective_depth.h"
 #include "splitfusion/cost_functions/symmetric.h"
@@ -132,6 +136,123 @@ TEST(VelocityTerm, IsTheWaySinceTheFrameBefore) {
   EnergyInput body{rigid, {}, PinholeCamera()};
   body.before = &rigid.motions;
   EXPECT_EQ(ResidualsOf(VelocityTerm(), body, kOptions).residual_vectors, 0);
+}
+
+/// A plate with a node every 4 cm that was in two frames before the live one,
+/// frame 2, before a camera that stands still.
+class AccelerationTermTest : public ::testing::Test {
+ protected:
+  AccelerationTermTest() {
+    for (int frame = 0; frame < 2; ++frame) {
+      motions_.frames.push_back({frame, true, MovedBy(frame).motions});
+    }
+    input_.before = &motions_.frames.back().motions;
+    input_.context.frame = &frame_;
+    input_.context.history = &history_;
+  }
+
+  /// The plate after so many frames of a constant velocity.
+  static DeformationGraph MovedBy(double frames) {
+    DeformationGraph graph = PlateGraph();
+    for (NodeMotion& motion : graph.motions) {
+      motion.translation += frames * Eigen::Vector3d(0.1, -0.2, 0.05);
+    }
+    return graph;
+  }
+
+  AddedResiduals Added() const {
+    return ResidualsOf(AccelerationTerm(), input_, kOptions);
+  }
+
+  DeformationGraph graph_ = MovedBy(2);
+  const std::vector<Correspondence> none_;
+  const PinholeCamera camera_;
+  MotionHistory motions_;
+  const SurfaceHistory history_{{graph_, motions_}};
+  FrameFacts frame_{/*index=*/2};
+  EnergyInput input_{graph_, none_, camera_};
+};
+
+TEST_F(AccelerationTermTest, IsZeroAtConstantVelocity) {
+  EXPECT_EQ(Added().residual_vectors, graph_.size());
+  EXPECT_NEAR(EnergyOf(graph_, Added().residuals), 0, 1e-20);
+}
+
+TEST_F(AccelerationTermTest, IsTheChangeOfTheVelocity) {
+  for (NodeMotion& motion : graph_.motions) {
+    motion.translation += Eigen::Vector3d(0.03, 0, -0.04);
+  }
+  EXPECT_NEAR(EnergyOf(graph_, Added().residuals), 25, 1e-9);
+}
+
+TEST_F(AccelerationTermTest, IsAbsentWithoutASteadyPast) {
+  const auto expect_none = [&](const std::string& why) {
+    EXPECT_EQ(Added().residual_vectors, 0) << why;
+  };
+  frame_.index = 3;
+  expect_none("a frame is missing");
+  frame_.index = 2;
+  motions_.frames[0].tracked = false;
+  expect_none("lost");
+  motions_.frames[0].tracked = true;
+  motions_.frames.erase(motions_.frames.begin());
+  expect_none("born in the frame before");
+  input_.context.history = nullptr;
+  expect_none("looked for elsewhere");
+}
+
+TEST(NormalTerm, IsTheAngleBetweenTheNormals) {
+  // A plate of which the live one is turned by 0.2 rad about its centre.
+  const double half_angle = 0.1;
+  std::vector<Correspondence> pairs = PlateMovedBy({0.1, 0.2, 0.3});
+  for (Correspondence& c : pairs) c.target_normal = c.model.normal;
+  EXPECT_NEAR(EnergyOfTerm(NormalTerm(), pairs), 0, 1e-9) << "moved only";
+  const Eigen::Matrix3f turn =
+      ExpSo3(Eigen::Vector3d(2 * half_angle, 0, 0)).cast<float>();
+  for (Correspondence& c : pairs) c.target_normal = turn * c.model.normal;
+  // 5 cm a radian.
+  const double centimetres = 5 * 2 * std::sin(half_angle);
+  EXPECT_NEAR(EnergyOfTerm(NormalTerm(), pairs), centimetres * centimetres,
+              1e-5);
+}
+
+TEST(NormalTerm, CountsByTheConfidence) {
+  std::vector<Correspondence> pairs = PlateMovedBy({0, 0, 0});
+  for (Correspondence& c : pairs) {
+    c.target_normal = c.model.normal;
+    c.weight = 0.25;
+  }
+  // One that is wrong by a radian, and as much weight as all the others.
+  pairs.front().target_normal =
+      ExpSo3(Eigen::Vector3d(1, 0, 0)).cast<float>() * pairs[0].model.normal;
+  pairs.front().weight = 0.25f * static_cast<float>(pairs.size() - 1);
+  const double centimetres = 5 * 2 * std::sin(0.5);
+  EXPECT_NEAR(EnergyOfTerm(NormalTerm(), pairs), centimetres * centimetres / 2,
+              1e-4);
+}
+
+TEST(NormalTerm, IsZeroForTurnsAboutTheNormalAndHasTheRightGradients) {
+  DeformationGraph graph = CoverWithNodes(PlateMesh(0.2, 0.2, 0.01, 1), 0.04);
+  Correspondence c{};
+  c.model.point = {0.11f, -0.07f, 1};
+  c.model.normal = {0, 0, -1};
+  c.model.skinning = SkinningIndex(graph, 6).Skin(c.model.point);
+  c.target_normal = c.model.normal;
+  const NormalDifference flat = NormalDifference::Make(graph, c, 0.05);
+  const int count = c.model.skinning.count;
+  ASSERT_GT(count, 1);
+  const std::vector<double> turn = {0, 0, 0.7, 0.1, 0.2, 0.3};
+  const auto cost = AutoDiffOverTwists(flat, count, 3);
+  for (const double r :
+       Residuals(*cost, std::vector<std::vector<double>>(count, turn))) {
+    EXPECT_NEAR(r, 0, 1e-8);
+  }
+  Shake(0.05, /*seed=*/1, &graph);
+  const auto shaken =
+      AutoDiffOverTwists(NormalDifference::Make(graph, c, 0.05), count, 3);
+  for (const double size : {0.0, 0.01, 0.3}) {
+    EXPECT_GRADIENTS_MATCH(*shaken, RandomTwists(count, size, /*seed=*/2));
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/energy/gradient_check.h"
+#include "splitfusion/lib/energy/surface_history.h"
 #include "support/sample_correspondences.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
@@ -68,6 +69,7 @@ class GradientReport : public ::testing::Test {
     }
     lost_.assign(correspondences_.begin(), correspondences_.begin() + 9);
     before_.assign(graph_.size(), NodeMotion());
+    motions_.frames = {{0, true, before_}, {1, true, before_}};
   }
 
   std::vector<GradientError> Check(const std::string& energy) const {
@@ -77,6 +79,10 @@ class GradientReport : public ::testing::Test {
     problem.anneal = 2;
     problem.lost = &lost_;
     problem.tracks = &tracks_;
+    const SurfaceHistory history({graph_, motions_});
+    const FrameFacts frame{/*index=*/2};
+    problem.context.frame = &frame;
+    problem.context.history = &history;
     return CheckGradients(problem, graph_);
   }
 
@@ -87,6 +93,7 @@ class GradientReport : public ::testing::Test {
   std::vector<Correspondence> correspondences_, lost_;
   std::vector<TrackedPoint> tracks_;
   std::vector<NodeMotion> before_;
+  MotionHistory motions_;
 };
 
 TEST_F(GradientReport, TermsOfTheToolkitAreRight) {
