@@ -24,7 +24,7 @@
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 
 DEFINE_string(set, "",
-              "KEY=VALUE; ...: any flags, or [CLASS.]terms.arap.weight=4.");
+              "KEY=VALUE; ...: flags, [CLASS.]terms.arap.weight=4.");
 DEFINE_string(energy, "", "Terms of a paper, by name; see docs/terms.md.");
 DECLARE_string(class_names);
 DECLARE_int32(at);

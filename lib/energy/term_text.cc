@@ -45,7 +45,7 @@ std::vector<TermText> SplitTerms(const std::string& text) {
   while ((at = text.find_first_not_of(" \t\n", at)) != std::string::npos) {
     TermText& term = terms.emplace_back();
     term.name = TakeWord(text, &at);
-    if (at < text.size() && text[at] == '.') {
+    if (!term.name.empty() && at < text.size() && text[at] == '.') {
       term.of_class = std::move(term.name);
       term.name = TakeWord(text, &++at);
     }

@@ -57,10 +57,12 @@ class GradientReport : public ::testing::Test {
     correspondences_ = PerfectAssociation(
         mesh_, graph_,
         [](const Eigen::Vector3d& p) { return Bend(p, 1, 2.0); });
+    const Eigen::Matrix3f turn =
+        ExpSo3(Eigen::Vector3d(0.1, -0.2, 0)).cast<float>();
     for (Correspondence& c : correspondences_) {
       c.intensity_difference = 0.05f;
       c.intensity_gradient = {0.02f, -0.01f};
-      c.target_normal = c.warped_normal;
+      c.target_normal = turn * c.warped_normal;
     }
     tracks_.resize(5);
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -102,6 +104,7 @@ TEST_F(GradientReport, TermsOfTheToolkitAreRight) {
     energy += name + "(loss=tukey,scale=0.1) ";
   }
   for (const GradientError& error : Check(energy)) {
+    EXPECT_GT(error.residuals, 0) << error.term;
     EXPECT_LT(error.relative, 1e-6) << error.term;
     EXPECT_EQ(error.failed, 0) << error.term;
   }
