@@ -7,6 +7,7 @@
 #include "splitfusion/cost_functions/normal.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
 #include "splitfusion/cost_functions/point_to_point.h"
+#include "splitfusion/cost_functions/point_to_tsdf.h"
 #include "splitfusion/cost_functions/projective_depth.h"
 #include "splitfusion/cost_functions/symmetric.h"
 #include "splitfusion/cost_functions/temporal_arap.h"
@@ -37,6 +38,8 @@ TermRegistry BuiltinTerms() {
                     [] { return std::make_unique<VelocityTerm>(); });
   registry.Register("acceleration",
                     [] { return std::make_unique<AccelerationTerm>(); });
+  registry.Register("point_to_tsdf",
+                    [] { return std::make_unique<PointToTsdfTerm>(); });
   registry.Register("normal", [] { return std::make_unique<NormalTerm>(); });
   return registry;
 }

@@ -10,6 +10,7 @@
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/tracking/translation_search.h"
 #include "splitfusion/lib/visibility/exposure.h"
+#include "splitfusion/pipelines/surface_context.h"
 
 namespace splitfusion {
 
@@ -129,34 +130,17 @@ bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
   report->track_points = static_cast<int>(points.size());
   report->associate_seconds += stopwatch.Seconds();
   SurfaceContext known(frame_, *surface, *surfaces_.at(0), goes_on);
-  if (surface->is_ray_cast()) {
-    known.SetRendered(background_map_);
-  } else {
-    known.SetRendered(rendering_);
-  }
-  const bool tracked = tracker_.Track(
-      samples, points, live_, static_cast<std::uint16_t>(id), still, graph,
-      report, PrepareTerms(known, points, *surface));
+  known.SetRendered(rendering_, background_map_);
+  known.PrepareTerms(tracker_.energies(), live_, points, &term_states_.at(id));
+  const bool tracked =
+      tracker_.Track(samples, points, live_, static_cast<std::uint16_t>(id),
+                     still, graph, report, known.view());
   stopwatch.Restart();
   if (tracked && followed) {
     point_tracks_.Begin(id, samples, WarpField(*graph), live_);
   }
   report->associate_seconds += stopwatch.Seconds();
   return tracked;
-}
-
-TermContext SplitFusion::PrepareTerms(const SurfaceContext& known,
-                                      const std::vector<TrackedPoint>& tracks,
-                                      const Surface& surface) {
-  const std::vector<Correspondence> none;
-  EnergyInput input{surface.graph(), none, camera_, &live_};
-  input.tracks = &tracks;
-  input.surface = surface.id();
-  input.context = known.View();
-  TermStates& states = term_states_.at(surface.id());
-  states.Prepare(tracker_.energies().Of(surface.label()), input);
-  input.context.states = &states;
-  return input.context;
 }
 
 void SplitFusion::TrackBackground(bool given, FrameReport* report) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/energy/term_state.h"
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
@@ -17,7 +18,6 @@
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/registries.h"
-#include "splitfusion/pipelines/surface_context.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
@@ -92,10 +92,6 @@ class SplitFusion {
   bool TrackSurface(const std::vector<ModelSample>& samples,
                     const Rigid3d& still, bool goes_on, Surface* surface,
                     SurfaceReport* report);
-  /// Has the terms prepare what they keep of the surface.
-  TermContext PrepareTerms(const SurfaceContext& known,
-                           const std::vector<TrackedPoint>& tracks,
-                           const Surface& surface);
   /// Leaves it where it is predicted if the pose of the camera is `given`.
   void TrackBackground(bool given, FrameReport* report);
   /// Every object on its own and at the same time.

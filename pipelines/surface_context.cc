@@ -1,12 +1,17 @@
 #include "splitfusion/pipelines/surface_context.h"
 
+#include "splitfusion/lib/energy/energy_term.h"
+
 namespace splitfusion {
 
 SurfaceContext::SurfaceContext(const FrameFacts& frame, const Surface& surface,
                                const Surface& background, bool goes_on)
-    : frame_(frame), surface_{surface.label(),          surface.kind(),
-                              surface.first_frame(),    &surface.mesh(),
-                              &surface.mesh_skinning(), &surface.volume()} {
+    : surface_(surface), facts_{surface.label(),          surface.kind(),
+                                surface.first_frame(),    &surface.mesh(),
+                                &surface.mesh_skinning(), &surface.volume()} {
+  view_.frame = &frame;
+  view_.surface = &facts_;
+  view_.surface_graph = &surface.graph();
   if (!goes_on) return;
   std::optional<SurfaceHistory::Past> room;
   if (!surface.is_background()) {
@@ -15,24 +20,32 @@ SurfaceContext::SurfaceContext(const FrameFacts& frame, const Surface& surface,
   }
   history_.emplace(SurfaceHistory::Past{surface.graph(), surface.history()},
                    room);
+  view_.history = &*history_;
 }
 
-void SurfaceContext::SetRendered(const MeshRendering& rendering) {
-  rendered_ = {rendering.camera, &rendering.raster.depth, nullptr,
-               &rendering.normals, nullptr};
+void SurfaceContext::SetRendered(const MeshRendering& rendering,
+                                 const ModelMap& background) {
+  if (surface_.is_ray_cast()) {
+    rendered_ = {background.camera, nullptr, &background.points,
+                 &background.normals, &background.color};
+  } else {
+    rendered_ = {rendering.camera, &rendering.raster.depth, nullptr,
+                 &rendering.normals, nullptr};
+  }
+  view_.rendered = &rendered_;
 }
 
-void SurfaceContext::SetRendered(const ModelMap& map) {
-  rendered_ = {map.camera, nullptr, &map.points, &map.normals, &map.color};
-}
-
-TermContext SurfaceContext::View() const {
-  TermContext view;
-  view.frame = &frame_;
-  view.surface = &surface_;
-  view.history = history_ ? &*history_ : nullptr;
-  view.rendered = &rendered_;
-  return view;
+void SurfaceContext::PrepareTerms(const SurfaceEnergies& energies,
+                                  const LiveView& live,
+                                  const std::vector<TrackedPoint>& tracks,
+                                  TermStates* states) {
+  const std::vector<Correspondence> none;
+  EnergyInput input{surface_.graph(), none, live.camera, &live};
+  input.tracks = &tracks;
+  input.surface = surface_.id();
+  input.context = view_;
+  states->Prepare(energies.Of(surface_.label()), input);
+  view_.states = states;
 }
 
 }  // namespace splitfusion

@@ -2,9 +2,12 @@
 #define SPLITFUSION_PIPELINES_SURFACE_CONTEXT_H_
 
 #include <optional>
+#include <vector>
 
+#include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/lib/energy/surface_history.h"
 #include "splitfusion/lib/energy/term_context.h"
+#include "splitfusion/lib/energy/term_state.h"
 #include "splitfusion/lib/render/model_rendering.h"
 
 namespace splitfusion {
@@ -20,19 +23,23 @@ class SurfaceContext {
   SurfaceContext(const SurfaceContext&) = delete;             ///< Not copied.
   SurfaceContext& operator=(const SurfaceContext&) = delete;  ///< Not copied.
 
-  /// The surface is in these images.
-  void SetRendered(const MeshRendering& rendering);
-  /// As the other, of a background that is ray cast.
-  void SetRendered(const ModelMap& map);
+  /// Adds the model in the live view, in the one of the two that has it.
+  void SetRendered(const MeshRendering& rendering, const ModelMap& background);
+
+  /// Has the terms prepare what they keep of the surface, and adds it.
+  void PrepareTerms(const SurfaceEnergies& energies, const LiveView& live,
+                    const std::vector<TrackedPoint>& tracks,
+                    TermStates* states);
 
   /// For the terms; holds as long as this.
-  TermContext View() const;
+  const TermContext& view() const { return view_; }
 
  private:
-  const FrameFacts& frame_;
-  SurfaceFacts surface_;
+  const Surface& surface_;
+  SurfaceFacts facts_;
   std::optional<SurfaceHistory> history_;
   RenderedModel rendered_;
+  TermContext view_;
 };
 
 }  // namespace splitfusion

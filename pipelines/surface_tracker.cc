@@ -298,6 +298,7 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
   }
   Target rigid{target.live, target.surface, target.associator,
                tracks,      target.energy,  target.context};
+  rigid.context.surface_graph = graph;
   std::optional<SurfaceHistory> history;
   if (target.context.history != nullptr) {
     history.emplace(target.context.history->InRigidRounds(*graph));
@@ -379,6 +380,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   if (!association.correspondences.empty()) {
     TermContext context = target.context;
     context.samples = &samples;
+    if (!facts.rigid) context.surface_graph = graph;
     context.round = facts;
     context.round.stride = stage.stride;
     round.solver = solver_->Minimize(

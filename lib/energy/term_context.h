@@ -14,6 +14,7 @@ namespace splitfusion {
 class SurfaceHistory;
 class TermStates;
 class TsdfVolume;
+struct DeformationGraph;
 struct InstanceMask;
 struct ModelSample;
 struct Skinning;
@@ -40,7 +41,7 @@ struct SurfaceFacts {
   /// Of every vertex, the nodes of the surface's graph that carry it. In rigid
   /// rounds EnergyInput::graph is another one.
   const std::vector<Skinning>* skinning = nullptr;
-  const TsdfVolume* volume = nullptr;  ///< Signed distances.
+  const TsdfVolume* volume = nullptr;  ///< For SampleDistance().
 };
 
 /// The model as it was rendered where it is predicted, for every n-th pixel of
@@ -74,6 +75,9 @@ struct TermContext {
   const SurfaceFacts* surface = nullptr;
   /// Where it was before; null if it was not, or if it is looked for elsewhere.
   const SurfaceHistory* history = nullptr;
+  /// The graph of the surface itself; in rigid rounds EnergyInput::graph is
+  /// another one, and this is where they start.
+  const DeformationGraph* surface_graph = nullptr;
   /// The model in the live view.
   const RenderedModel* rendered = nullptr;
   /// All model points in view, those without a partner, too: at every pixel,

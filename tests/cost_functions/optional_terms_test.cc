@@ -7,12 +7,14 @@
 #include "splitfusion/cost_functions/acceleration.h"
 #include "splitfusion/cost_functions/normal.h"
 #include "splitfusion/cost_functions/point_to_point.h"
+#include "splitfusion/cost_functions/point_to_tsdf.h"
 #include "splitfusion/cost_functions/projective_depth.h"
 #include "splitfusion/cost_functions/symmetric.h"
 #include "splitfusion/cost_functions/velocity.h"
 #include "splitfusion/lib/energy/warp_functor.h"
 #include "support/gradient_check.h"
 #include "support/sample_correspondences.h"
+#include "support/sample_depth.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 #include "support/term_energy.h"
@@ -253,6 +255,100 @@ TEST(NormalTerm, IsZeroForTurnsAboutTheNormalAndHasTheRightGradients) {
   for (const double size : {0.0, 0.01, 0.3}) {
     EXPECT_GRADIENTS_MATCH(*shaken, RandomTwists(count, size, /*seed=*/2));
   }
+}
+
+/// The volume of a slanted wall, and pairs of a plate with live points.
+class PointToTsdfTest : public ::testing::Test {
+ protected:
+  PointToTsdfTest() {
+    const DepthObservation wall = ObserveAll(
+        SmallCamera(), PlaneDepth(SmallCamera(), normal_, normal_.z()));
+    AllocateBand(wall, Rigid3d::Identity(), &volume_);
+    IntegrateRigid(wall, Rigid3d::Identity(), &volume_);
+    surface_.volume = &volume_;
+  }
+
+  /// The energy where live points are `off` before the wall, which is carried
+  /// by `graph`; in rigid rounds where `start` is given.
+  double Energy(double off, const DeformationGraph& graph,
+                const Rigid3d& camera_from_canonical,
+                const DeformationGraph* start = nullptr) {
+    std::vector<Correspondence> pairs;
+    for (const double x : {-0.1, 0.0, 0.1}) {
+      Correspondence& c = pairs.emplace_back();
+      // On the wall, and beside what is before it.
+      const Eigen::Vector3d point(
+          x, 0.05,
+          1 - x * normal_.x() / normal_.z() - 0.05 * normal_.y() / normal_.z());
+      const Eigen::Vector3d beside =
+          point + 0.02 * normal_.cross(Eigen::Vector3d::UnitX());
+      c.model.point =
+          (start == nullptr ? beside : camera_from_canonical * beside)
+              .cast<float>();
+      c.model.skinning = SkinningIndex(graph, 6).Skin(c.model.point);
+      c.target =
+          (camera_from_canonical * (point - off * normal_)).cast<float>();
+    }
+    EnergyInput input{graph, pairs, camera_};
+    input.context.surface = &surface_;
+    input.context.surface_graph = start;
+    input.context.round.rigid = start != nullptr;
+    const AddedResiduals added =
+        ResidualsOf(PointToTsdfTerm(), input, kOptions);
+    vectors_ = added.residual_vectors;
+    residuals_ = added.residuals;
+    return EnergyOf(graph, added.residuals);
+  }
+
+  const Eigen::Vector3d normal_ = Eigen::Vector3d(0.3, -0.2, 1).normalized();
+  const PinholeCamera camera_;
+  TsdfVolume volume_{TsdfOptions{/*voxel_size=*/0.01, /*truncation=*/0.06}};
+  SurfaceFacts surface_;
+  int vectors_ = 0;          // Of the last Energy(),
+  TermResiduals residuals_;  // likewise.
+};
+
+TEST_F(PointToTsdfTest, IsTheDistanceAcrossTheSurface) {
+  DeformationGraph graph = CoverWithNodes(PlateMesh(0.4, 0.4, 0.02, 1), 0.08);
+  EXPECT_NEAR(Energy(0, graph, Rigid3d::Identity()), 0, 1e-4);
+  EXPECT_NEAR(Energy(0.02, graph, Rigid3d::Identity()), 4, 0.02);
+  EXPECT_EQ(vectors_, 3);
+  // The same wherever the warp carries it.
+  const Rigid3d moved = MakeMotion({0.1, -0.3, 0.2}, {0.5, 0.1, -0.2});
+  ApplyRigidMotion(moved, &graph);
+  EXPECT_NEAR(Energy(0.02, graph, moved), 4, 0.02);
+  EXPECT_NEAR(Energy(-0.02, graph, moved), 4, 0.02);
+}
+
+TEST_F(PointToTsdfTest, RigidRoundsAreCarriedFromTheCameraFrame) {
+  const Rigid3d moved = MakeMotion({0.1, -0.3, 0.2}, {0.5, 0.1, -0.2});
+  const DeformationGraph start = MakeRigidGraph(moved);
+  const DeformationGraph round = MakeRigidGraph(Rigid3d::Identity());
+  EXPECT_NEAR(Energy(0.02, round, moved, &start), 4, 0.02);
+  const DeformationGraph bent = PlateGraph();
+  Energy(0.02, round, moved, &bent);
+  EXPECT_EQ(vectors_, 0) << "where a pair belongs is not known";
+}
+
+TEST_F(PointToTsdfTest, LeavesOutWhatTheVolumeDoesNotKnow) {
+  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  for (const double off : {0.07, 0.5, -0.3, 1e12}) {
+    Energy(off, graph, Rigid3d::Identity());
+    EXPECT_EQ(vectors_, 0) << off;
+  }
+  surface_.volume = nullptr;
+  Energy(0.02, graph, Rigid3d::Identity());
+  EXPECT_EQ(vectors_, 0) << "without a volume";
+}
+
+TEST_F(PointToTsdfTest, PullsTheSurfaceOntoTheLivePoints) {
+  Energy(0.02, MakeRigidGraph(Rigid3d::Identity()), Rigid3d::Identity());
+  const auto moved_by = [&](double off) {
+    return EnergyOf(MakeRigidGraph(MakeMotion({0, 0, 0}, -off * normal_)),
+                    residuals_);
+  };
+  EXPECT_NEAR(moved_by(0.02), 0, 1e-3);
+  EXPECT_NEAR(moved_by(-0.02), 16, 0.1);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "splitfusion/lib/energy/gradient_check.h"
 #include "splitfusion/lib/energy/surface_history.h"
 #include "support/sample_correspondences.h"
+#include "support/sample_depth.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 
@@ -72,6 +73,10 @@ class GradientReport : public ::testing::Test {
     lost_.assign(correspondences_.begin(), correspondences_.begin() + 9);
     before_.assign(graph_.size(), NodeMotion());
     motions_.frames = {{0, true, before_}, {1, true, before_}};
+    const DepthObservation wall =
+        ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1));
+    AllocateBand(wall, Rigid3d::Identity(), &volume_);
+    IntegrateRigid(wall, Rigid3d::Identity(), &volume_);
   }
 
   std::vector<GradientError> Check(const std::string& energy) const {
@@ -85,6 +90,10 @@ class GradientReport : public ::testing::Test {
     const FrameFacts frame{/*index=*/2};
     problem.context.frame = &frame;
     problem.context.history = &history;
+    SurfaceFacts surface;
+    surface.volume = &volume_;
+    problem.context.surface = &surface;
+    problem.context.round.rigid = false;
     return CheckGradients(problem, graph_);
   }
 
@@ -96,6 +105,7 @@ class GradientReport : public ::testing::Test {
   std::vector<TrackedPoint> tracks_;
   std::vector<NodeMotion> before_;
   MotionHistory motions_;
+  TsdfVolume volume_{TsdfOptions{/*voxel_size=*/0.02, /*truncation=*/0.2}};
 };
 
 TEST_F(GradientReport, TermsOfTheToolkitAreRight) {

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <mutex>
 #include <set>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/energy/surface_history.h"
+#include "support/expect_input_error.h"
 #include "support/synthetic_run.h"
 
 namespace splitfusion {
@@ -180,6 +183,42 @@ TEST(TermContext, WhatATermKeepsSurvivesACheckpoint) {
   }
   EXPECT_TRUE(SameResults(whole.fusion(), resumed.fusion()));
   EXPECT_FALSE(SameResults(whole.fusion(), without.fusion()));
+}
+
+/// A residual of one node that there may not be, or of a value that is none.
+class WrongTerm : public EnergyTerm {
+ public:
+  void List(OptionList* list) override {
+    list->Number("node", &node_, Range(), "", "Whose residual it is.");
+  }
+  void AddResiduals(const EnergyInput&, ResidualSink* sink) const override {
+    sink->AddNodes({{node_}}, std::vector<AgeTerm::Pull>{{std::nan("")}});
+  }
+
+ private:
+  int node_ = 0;
+};
+
+TEST(TermContext, WhatATermGetsWrongDoesNotCrash) {
+  Registries registries;
+  registries.terms.Register("wrong",
+                            [] { return std::make_unique<WrongTerm>(); });
+  const auto second_frame = [&](const std::string& node) {
+    PipelineOptions options;
+    options.terms += " wrong(node=" + node + ")";
+    SyntheticRun run(SyntheticRun::Quick(), options, registries);
+    run.Next();
+    return run.Next();
+  };
+  for (const std::string node : {"-1", "100000"}) {
+    ExpectInputError(
+        [&] { second_frame(node); },
+        "nodes of a residual = " + node + ": expected nodes of a graph of ");
+  }
+  for (const SurfaceReport& surface : second_frame("0").surfaces) {
+    if (!surface.event.empty()) continue;
+    EXPECT_NE(surface.state, TrackState::kTracked) << surface.label;
+  }
 }
 
 }  // namespace
