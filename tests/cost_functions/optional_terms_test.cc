@@ -260,6 +260,9 @@ TEST(NormalTerm, IsZeroForTurnsAboutTheNormalAndHasTheRightGradients) {
 /// The volume of a slanted wall, and pairs of a plate with live points.
 class PointToTsdfTest : public ::testing::Test {
  protected:
+  /// The wall leans by as much within half a pixel, centimetres.
+  static constexpr double kPixel = 0.15;
+
   PointToTsdfTest() {
     const DepthObservation wall = ObserveAll(
         SmallCamera(), PlaneDepth(SmallCamera(), normal_, normal_.z()));
@@ -268,11 +271,12 @@ class PointToTsdfTest : public ::testing::Test {
     surface_.volume = &volume_;
   }
 
-  /// The energy where live points are `off` before the wall, which is carried
-  /// by `graph`; in rigid rounds where `start` is given.
-  double Energy(double off, const DeformationGraph& graph,
-                const Rigid3d& camera_from_canonical,
-                const DeformationGraph* start = nullptr) {
+  /// Root mean square of the residuals, centimetres, where live points are
+  /// `off` before the wall, which is carried by `graph`; in rigid rounds where
+  /// `start` is given.
+  double Distance(double off, const DeformationGraph& graph,
+                  const Rigid3d& camera_from_canonical,
+                  const DeformationGraph* start = nullptr) {
     std::vector<Correspondence> pairs;
     for (const double x : {-0.1, 0.0, 0.1}) {
       Correspondence& c = pairs.emplace_back();
@@ -297,58 +301,59 @@ class PointToTsdfTest : public ::testing::Test {
         ResidualsOf(PointToTsdfTerm(), input, kOptions);
     vectors_ = added.residual_vectors;
     residuals_ = added.residuals;
-    return EnergyOf(graph, added.residuals);
+    return std::sqrt(EnergyOf(graph, added.residuals));
   }
 
   const Eigen::Vector3d normal_ = Eigen::Vector3d(0.3, -0.2, 1).normalized();
   const PinholeCamera camera_;
   TsdfVolume volume_{TsdfOptions{/*voxel_size=*/0.01, /*truncation=*/0.06}};
   SurfaceFacts surface_;
-  int vectors_ = 0;          // Of the last Energy(),
+  int vectors_ = 0;          // Of the last Distance(),
   TermResiduals residuals_;  // likewise.
 };
 
 TEST_F(PointToTsdfTest, IsTheDistanceAcrossTheSurface) {
   DeformationGraph graph = CoverWithNodes(PlateMesh(0.4, 0.4, 0.02, 1), 0.08);
-  EXPECT_NEAR(Energy(0, graph, Rigid3d::Identity()), 0, 1e-4);
-  EXPECT_NEAR(Energy(0.02, graph, Rigid3d::Identity()), 4, 0.02);
+  EXPECT_NEAR(Distance(0, graph, Rigid3d::Identity()), 0, kPixel);
+  const double before = Distance(0.02, graph, Rigid3d::Identity());
+  EXPECT_NEAR(before, 2, kPixel);
   EXPECT_EQ(vectors_, 3);
   // The same wherever the warp carries it.
   const Rigid3d moved = MakeMotion({0.1, -0.3, 0.2}, {0.5, 0.1, -0.2});
   ApplyRigidMotion(moved, &graph);
-  EXPECT_NEAR(Energy(0.02, graph, moved), 4, 0.02);
-  EXPECT_NEAR(Energy(-0.02, graph, moved), 4, 0.02);
+  EXPECT_NEAR(Distance(0.02, graph, moved), before, 1e-3);
+  EXPECT_NEAR(Distance(-0.02, graph, moved), 2, kPixel);
 }
 
 TEST_F(PointToTsdfTest, RigidRoundsAreCarriedFromTheCameraFrame) {
   const Rigid3d moved = MakeMotion({0.1, -0.3, 0.2}, {0.5, 0.1, -0.2});
   const DeformationGraph start = MakeRigidGraph(moved);
   const DeformationGraph round = MakeRigidGraph(Rigid3d::Identity());
-  EXPECT_NEAR(Energy(0.02, round, moved, &start), 4, 0.02);
+  EXPECT_NEAR(Distance(0.02, round, moved, &start), 2, kPixel);
   const DeformationGraph bent = PlateGraph();
-  Energy(0.02, round, moved, &bent);
+  Distance(0.02, round, moved, &bent);
   EXPECT_EQ(vectors_, 0) << "where a pair belongs is not known";
 }
 
 TEST_F(PointToTsdfTest, LeavesOutWhatTheVolumeDoesNotKnow) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   for (const double off : {0.07, 0.5, -0.3, 1e12}) {
-    Energy(off, graph, Rigid3d::Identity());
+    Distance(off, graph, Rigid3d::Identity());
     EXPECT_EQ(vectors_, 0) << off;
   }
   surface_.volume = nullptr;
-  Energy(0.02, graph, Rigid3d::Identity());
+  Distance(0.02, graph, Rigid3d::Identity());
   EXPECT_EQ(vectors_, 0) << "without a volume";
 }
 
 TEST_F(PointToTsdfTest, PullsTheSurfaceOntoTheLivePoints) {
-  Energy(0.02, MakeRigidGraph(Rigid3d::Identity()), Rigid3d::Identity());
+  Distance(0.02, MakeRigidGraph(Rigid3d::Identity()), Rigid3d::Identity());
   const auto moved_by = [&](double off) {
-    return EnergyOf(MakeRigidGraph(MakeMotion({0, 0, 0}, -off * normal_)),
-                    residuals_);
+    return std::sqrt(EnergyOf(
+        MakeRigidGraph(MakeMotion({0, 0, 0}, -off * normal_)), residuals_));
   };
-  EXPECT_NEAR(moved_by(0.02), 0, 1e-3);
-  EXPECT_NEAR(moved_by(-0.02), 16, 0.1);
+  EXPECT_NEAR(moved_by(0.02), 0, kPixel);
+  EXPECT_NEAR(moved_by(-0.02), 4, kPixel);
 }
 
 }  // namespace
