@@ -67,17 +67,23 @@ std::vector<NodeKey> SortedKeys(
 
 /// @throw InputError unless it is carried by nodes below `end`, ascending.
 void CheckSample(const ModelSample* sample, int end) {
-  CheckOption(sample != nullptr, "sample of a residual", "null", "a sample");
+  // Of thousands: messages are made when one is wrong, not before.
+  if (sample == nullptr) {
+    throw OptionError("sample of a residual", "null", "a sample");
+  }
   const Skinning& skinning = sample->skinning;
-  CheckOption(0 < skinning.count && skinning.count <= kMaxSkinningNodes,
-              "nodes of a sample", skinning.count,
-              Range{1, kMaxSkinningNodes}.Text());
-  const auto begin = skinning.nodes.begin();
-  const auto past = begin + skinning.count;
-  CheckNodes(skinning.nodes.data(), skinning.count, end);
-  if (std::adjacent_find(begin, past, std::greater_equal<>()) == past) return;
-  throw OptionError("nodes of a sample",
-                    NodesText(skinning.nodes.data(), skinning.count),
+  const int count = skinning.count;
+  if (count < 1 || count > kMaxSkinningNodes) {
+    throw OptionError("nodes of a sample", std::to_string(count),
+                      Range{1, kMaxSkinningNodes}.Text());
+  }
+  const int* nodes = skinning.nodes.data();
+  CheckNodes(nodes, count, end);
+  if (std::adjacent_find(nodes, nodes + count, std::greater_equal<>()) ==
+      nodes + count) {
+    return;
+  }
+  throw OptionError("nodes of a sample", NodesText(nodes, count),
                     "ascending nodes");
 }
 
