@@ -51,7 +51,7 @@ endif()
 run("${bin}/sf_run"
     "--terms_library=${stretch}/libstretch.so,${stretch}/libsteady.so"
     "--set=person.terms.steady.weight=2" "--output=${STAGE_DIR}/steady"
-    ${arguments})
+    "--sequence=${STAGE_DIR}/sequence")
 file(STRINGS "${STAGE_DIR}/steady/frames.jsonl" frames)
 foreach(frame RANGE 2)
   list(GET frames ${frame} line)
