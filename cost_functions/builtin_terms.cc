@@ -1,10 +1,13 @@
 #include "splitfusion/cost_functions/builtin_terms.h"
 
+#include "splitfusion/cost_functions/acceleration.h"
 #include "splitfusion/cost_functions/arap.h"
 #include "splitfusion/cost_functions/color_constancy.h"
 #include "splitfusion/cost_functions/live_to_model.h"
+#include "splitfusion/cost_functions/normal.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
 #include "splitfusion/cost_functions/point_to_point.h"
+#include "splitfusion/cost_functions/point_to_tsdf.h"
 #include "splitfusion/cost_functions/projective_depth.h"
 #include "splitfusion/cost_functions/symmetric.h"
 #include "splitfusion/cost_functions/temporal_arap.h"
@@ -33,6 +36,11 @@ TermRegistry BuiltinTerms() {
                     [] { return std::make_unique<ProjectiveDepthTerm>(); });
   registry.Register("velocity",
                     [] { return std::make_unique<VelocityTerm>(); });
+  registry.Register("acceleration",
+                    [] { return std::make_unique<AccelerationTerm>(); });
+  registry.Register("point_to_tsdf",
+                    [] { return std::make_unique<PointToTsdfTerm>(); });
+  registry.Register("normal", [] { return std::make_unique<NormalTerm>(); });
   return registry;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/lib/base/any_of.h"
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/archive_file.h"
 #include "splitfusion/lib/base/error.h"
@@ -264,6 +265,7 @@ void SequenceRun::CheckReconstructed() const {
 
 void SequenceRun::WriteEnd() {
   if (done_ == work_->reader.size()) {
+    WarnOfUnknownClasses();
     WriteResults(RunStatus::kComplete);
   } else {
     SaveCheckpoint();
@@ -339,6 +341,18 @@ void SequenceRun::WarnOfCoarseGraphs(int frame) {
          << 1000 * planned
          << " mm, to keep --max_nodes=" << surface->graph_options().max_nodes;
     Warn(text.str());
+  }
+}
+
+void SequenceRun::WarnOfUnknownClasses() const {
+  std::set<std::string> classes;
+  for (const auto& [id, surface] : work_->fusion.surfaces()) {
+    classes.insert(ClassKey(surface->label()));
+  }
+  for (const std::string& named : work_->fusion.energies().classes()) {
+    if (classes.count(named) > 0) continue;
+    Warn("terms of class " + named + " had no effect: there are surfaces of " +
+         AnyOf({classes.begin(), classes.end()}));
   }
 }
 

@@ -136,6 +136,8 @@ class SequenceRun {
   void WarnOfLostSurfaces(const FrameReport& report) const;
   void WarnOfCoarseGraphs(int frame);
   void WarnOfSkippedFrames() const;
+  /// Of options of terms for classes of which no surface is.
+  void WarnOfUnknownClasses() const;
   void Warn(const std::string& line) const;
 
   std::unique_ptr<Reconstruction> work_;

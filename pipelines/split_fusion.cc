@@ -10,6 +10,7 @@
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/tracking/translation_search.h"
 #include "splitfusion/lib/visibility/exposure.h"
+#include "splitfusion/pipelines/surface_context.h"
 
 namespace splitfusion {
 
@@ -24,7 +25,7 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
       splitter_(camera, labels, options.split),
       point_tracks_(options.point_tracks),
       tracker_(options.tracker, options.solver,
-               ParseEnergy(options.terms, registries.terms),
+               SurfaceEnergies::Parse(options.terms, registries.terms),
                registries.associations, registries.solvers) {
   options_.Check();
   camera_.Check();
@@ -40,9 +41,12 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   report.read_seconds = prepared.read_seconds;
   report.segment_seconds = prepared.segment_seconds;
   live_ = std::move(prepared.live);
+  frame_ = {frame.index, frame.timestamp, &prepared.detections, &trajectory_};
   PredictMotions(frame.world_from_camera);
   Split(prepared, &report);
   if (!surfaces_.empty()) {
+    // Surfaces are tracked at the same time: none is to add itself.
+    for (const auto& entry : surfaces_) term_states_[entry.first];
     FollowPoints(&report);
     TrackBackground(frame.world_from_camera.has_value(), &report);
     TrackObjects(&report);
@@ -110,8 +114,8 @@ void SplitFusion::FollowPoints(FrameReport* report) {
 }
 
 bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
-                               const Rigid3d& still, Surface* surface,
-                               SurfaceReport* report) {
+                               const Rigid3d& still, bool goes_on,
+                               Surface* surface, SurfaceReport* report) {
   Stopwatch stopwatch;
   const int id = surface->id();
   DeformationGraph* graph = surface->mutable_graph();
@@ -125,9 +129,12 @@ bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
   }
   report->track_points = static_cast<int>(points.size());
   report->associate_seconds += stopwatch.Seconds();
+  SurfaceContext known(frame_, *surface, *surfaces_.at(0), goes_on);
+  known.SetRendered(rendering_, background_map_);
+  known.PrepareTerms(tracker_.energies(), live_, points, &term_states_.at(id));
   const bool tracked =
       tracker_.Track(samples, points, live_, static_cast<std::uint16_t>(id),
-                     still, graph, report);
+                     still, graph, report, known.view());
   stopwatch.Restart();
   if (tracked && followed) {
     point_tracks_.Begin(id, samples, WarpField(*graph), live_);
@@ -155,8 +162,8 @@ void SplitFusion::TrackBackground(bool given, FrameReport* report) {
   surface.render_seconds = stopwatch.Restart();
   const Rigid3d predicted = MeanRigidMotion(background.graph());
   background_state_ =
-      TrackSurface(samples, predictors_.at(0).velocity().inverse(), &background,
-                   &surface)
+      TrackSurface(samples, predictors_.at(0).velocity().inverse(),
+                   /*goes_on=*/true, &background, &surface)
           ? TrackState::kTracked
           : TrackState::kLost;
   // A camera motion moves every surface.
@@ -177,7 +184,8 @@ void SplitFusion::TrackObjects(FrameReport* report) {
         StateOf(surface.id()) != TrackState::kTracked) {
       return;
     }
-    found[i] = TrackObject(surfaces_.at(objects[i].id).get(), &objects[i]);
+    found[i] = TrackObject(/*goes_on=*/true, surfaces_.at(objects[i].id).get(),
+                           &objects[i]);
   });
   // One after the other: a surface found elsewhere changes the rendering.
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -260,7 +268,8 @@ bool SplitFusion::PlaceWhereSeen(Surface* surface, SurfaceReport* report) {
   return shift.has_value();
 }
 
-bool SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
+bool SplitFusion::TrackObject(bool goes_on, Surface* surface,
+                              SurfaceReport* report) {
   Stopwatch stopwatch;
   const std::vector<ModelSample> samples =
       VisibleSamples(rendering_, *surface, options_.render_stride);
@@ -269,7 +278,7 @@ bool SplitFusion::TrackObject(Surface* surface, SurfaceReport* report) {
   const Rigid3d still = world_from_camera.inverse() *
                         predictors_.at(surface->id()).velocity().inverse() *
                         world_from_camera;
-  return TrackSurface(samples, still, surface, report);
+  return TrackSurface(samples, still, goes_on, surface, report);
 }
 
 bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
@@ -278,7 +287,10 @@ bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   // Where it was predicted a tracked one has just failed.
   const bool failed = StateOf(surface->id()) == TrackState::kTracked;
   if (!PlaceWhereSeen(surface, report) && failed) return false;
-  if (TrackObject(surface, report) && ExplainsItsPixels(report)) return true;
+  if (TrackObject(/*goes_on=*/false, surface, report) &&
+      ExplainsItsPixels(report)) {
+    return true;
+  }
   *surface->mutable_graph() = before;
   point_tracks_ = tracks_before;
   rendering_ =
@@ -341,6 +353,7 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     object.event = "reanchored";
     point_tracks_.End(object.id);
     predictors_.erase(object.id);
+    term_states_.erase(object.id);
   }
 }
 
@@ -351,6 +364,7 @@ void SplitFusion::FollowTracks() {
     if (track.merged_into > 0) {
       surfaces_.erase(found);
       predictors_.erase(id);
+      term_states_.erase(id);
       continue;
     }
     found->second->set_inactive(!track.followed());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/energy/term_state.h"
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
@@ -60,6 +61,8 @@ class SplitFusion {
   const PinholeCamera& camera() const { return camera_; }
   /// Options in use.
   const PipelineOptions& options() const { return options_; }
+  /// What is minimised.
+  const SurfaceEnergies& energies() const { return tracker_.energies(); }
   /// Surface ids of the last frame, HxW.
   const LabelImage& labels() const { return live_.labels; }
 
@@ -84,9 +87,10 @@ class SplitFusion {
   /// the frame before.
   void FollowPoints(FrameReport* report);
   /// Moves a surface onto its live pixels from where it is predicted; `still`
-  /// as of SurfaceTracker::Track(). Whether it fits.
+  /// as of SurfaceTracker::Track(), `goes_on` as of SurfaceContext. Whether it
+  /// fits.
   bool TrackSurface(const std::vector<ModelSample>& samples,
-                    const Rigid3d& still, Surface* surface,
+                    const Rigid3d& still, bool goes_on, Surface* surface,
                     SurfaceReport* report);
   /// Leaves it where it is predicted if the pose of the camera is `given`.
   void TrackBackground(bool given, FrameReport* report);
@@ -104,7 +108,8 @@ class SplitFusion {
   /// Shifts a surface to where its live pixels are; whether such a place is
   /// found.
   bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
-  bool TrackObject(Surface* surface, SurfaceReport* report);
+  /// `goes_on`: as of SurfaceContext.
+  bool TrackObject(bool goes_on, Surface* surface, SurfaceReport* report);
   /// Tracks a surface that is lost or was occluded from where its live pixels
   /// are; leaves it where it was if that fails.
   bool TrackWhereSeen(Surface* surface, SurfaceReport* report);
@@ -134,6 +139,9 @@ class SplitFusion {
   SurfaceTracker tracker_;
   SurfaceMap surfaces_;
   Trajectory trajectory_;
+  /// What the terms of a surface keep of it; of surfaces that were tracked.
+  std::map<int, TermStates> term_states_;
+  FrameFacts frame_;  ///< That in hand.
   LiveView live_;
   MeshRendering rendering_;
   ModelMap background_map_;

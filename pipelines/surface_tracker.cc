@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/energy/surface_history.h"
 #include "splitfusion/lib/tracking/agreement.h"
 
 namespace splitfusion {
@@ -189,7 +191,8 @@ void TrackerOptions::ListBounds(OptionList* list) {
 void TrackerOptions::Check() const { CheckOptions(*this); }
 
 SurfaceTracker::SurfaceTracker(TrackerOptions options,
-                               const SolverOptions& solver, Energy energy,
+                               const SolverOptions& solver,
+                               SurfaceEnergies energies,
                                AssociationRegistry associations,
                                const SolverRegistry& solvers)
     : options_(std::move(options)),
@@ -197,10 +200,10 @@ SurfaceTracker::SurfaceTracker(TrackerOptions options,
       non_rigid_stages_(options_.NonRigidStages()),
       associations_(std::move(associations)),
       initial_radius_(solver.initial_radius),
-      energy_(std::move(energy)) {
+      energies_(std::move(energies)) {
   options_.Check();
   solver.Check();
-  CheckEnergy(energy_);
+  energies_.Check();
   associations_.Check(options_.association);
   solver_ = solvers.Make(solver.solver, solver);
 }
@@ -209,10 +212,14 @@ bool SurfaceTracker::Track(const std::vector<ModelSample>& samples,
                            const std::vector<TrackedPoint>& tracks,
                            const LiveView& live, std::uint16_t surface,
                            const Rigid3d& still, DeformationGraph* graph,
-                           SurfaceReport* report) const {
+                           SurfaceReport* report,
+                           const TermContext& context) const {
   const std::unique_ptr<Associator> associator =
       associations_.Make(options_.association, live, surface);
-  const Target target{live, surface, *associator, tracks};
+  const Energy& energy = context.surface == nullptr
+                             ? energies_.all()
+                             : energies_.Of(context.surface->class_name);
+  const Target target{live, surface, *associator, tracks, energy, context};
   DeformationGraph predicted = *graph;
   DeformationGraph stayed = predicted;
   Rigid3d back = still;
@@ -289,24 +296,45 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
   for (TrackedPoint& point : tracks) {
     point.model = WarpedSample(point.model, warp);
   }
-  const Target rigid{target.live, target.surface, target.associator, tracks};
+  Target rigid{target.live, target.surface, target.associator,
+               tracks,      target.energy,  target.context};
+  rigid.context.surface_graph = graph;
+  std::optional<SurfaceHistory> history;
+  if (target.context.history != nullptr) {
+    history.emplace(target.context.history->InRigidRounds(*graph));
+    rigid.context.history = &*history;
+  }
   DeformationGraph motion = MakeRigidGraph(Rigid3d::Identity());
   const std::vector<NodeMotion> before = MakeRigidGraph(back).motions;
-  for (const TrackingStage& stage : rigid_stages_) {
-    // A rigid stage of a non-rigid surface only brings it near.
-    if (!graph->rigid() && stage.stride < non_rigid_stages_.front().stride) {
-      break;
-    }
+  const std::vector<TrackingStage> stages = RigidStagesOf(*graph);
+  RoundFacts facts;
+  facts.rounds = TotalRounds(stages);
+  for (const TrackingStage& stage : stages) {
     const TrackingStage fitted =
         FittedStage(stage, options_.min_samples, samples);
-    for (int round = 0; round < stage.rounds; ++round) {
-      if (RunRound(warped, rigid, fitted, "rigid", 1.0, before, &motion,
-                   report)) {
-        break;
-      }
+    const int end = facts.round + stage.rounds;
+    while (facts.round < end) {
+      const bool settled =
+          RunRound(warped, rigid, fitted, facts, 1.0, before, &motion, report);
+      ++facts.round;
+      if (settled) break;
     }
+    ++facts.stage;
   }
   ApplyRigidMotion(MeanRigidMotion(motion), graph);
+}
+
+std::vector<TrackingStage> SurfaceTracker::RigidStagesOf(
+    const DeformationGraph& graph) const {
+  std::vector<TrackingStage> stages;
+  for (const TrackingStage& stage : rigid_stages_) {
+    // A rigid stage of a non-rigid surface only brings it near.
+    if (!graph.rigid() && stage.stride < non_rigid_stages_.front().stride) {
+      break;
+    }
+    stages.push_back(stage);
+  }
+  return stages;
 }
 
 void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
@@ -314,30 +342,33 @@ void SurfaceTracker::TrackNonRigid(const std::vector<ModelSample>& samples,
                                    const std::vector<NodeMotion>& before,
                                    DeformationGraph* graph,
                                    SurfaceReport* report) const {
-  const int total = TotalRounds(non_rigid_stages_);
-  int done = 0;
+  RoundFacts facts;
+  facts.rigid = false;
+  facts.rounds = TotalRounds(non_rigid_stages_);
   for (const TrackingStage& stage : non_rigid_stages_) {
     const TrackingStage fitted =
         FittedStage(stage, options_.min_samples, samples);
-    for (int round = 0; round < stage.rounds; ++round, ++done) {
-      const double progress = total > 1 ? done / (total - 1.0) : 1.0;
+    for (int round = 0; round < stage.rounds; ++round, ++facts.round) {
+      const double progress =
+          facts.rounds > 1 ? facts.round / (facts.rounds - 1.0) : 1.0;
       const double factor = std::pow(options_.prior_anneal, 1 - progress);
-      const bool settled = RunRound(samples, target, fitted, "non_rigid",
-                                    factor, before, graph, report);
+      const bool settled = RunRound(samples, target, fitted, facts, factor,
+                                    before, graph, report);
       if (settled && progress >= 1) return;
     }
+    ++facts.stage;
   }
 }
 
 bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
                               const Target& target, const TrackingStage& stage,
-                              const std::string& name, double anneal,
+                              const RoundFacts& facts, double anneal,
                               const std::vector<NodeMotion>& before,
                               DeformationGraph* graph,
                               SurfaceReport* report) const {
   Stopwatch stopwatch;
   TrackingRound round;
-  round.stage = name;
+  round.stage = facts.rigid ? "rigid" : "non_rigid";
   round.stride = stage.stride;
   round.anneal = anneal;
   const Association association = target.associator.Associate(
@@ -347,13 +378,18 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
   report->associate_seconds += stopwatch.Restart();
   bool settled = true;
   if (!association.correspondences.empty()) {
+    TermContext context = target.context;
+    context.samples = &samples;
+    if (!facts.rigid) context.surface_graph = graph;
+    context.round = facts;
+    context.round.stride = stage.stride;
     round.solver = solver_->Minimize(
-        {energy_, association.correspondences, target.live.camera, &target.live,
-         &before, anneal,
+        {target.energy, association.correspondences, target.live.camera,
+         &target.live, &before, anneal,
          options_.keep_radius
-             ? StartRadius(report->rounds, name, initial_radius_)
+             ? StartRadius(report->rounds, round.stage, initial_radius_)
              : initial_radius_,
-         &association.lost, &target.tracks, target.surface},
+         &association.lost, &target.tracks, target.surface, context},
         graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

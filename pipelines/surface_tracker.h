@@ -9,6 +9,7 @@
 #include "splitfusion/lib/association/association.h"
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/solver.h"
+#include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/report/frame_report.h"
 
@@ -83,7 +84,7 @@ class SurfaceTracker {
   /// @throw InputError if an option is out of its range or names what is not
   ///     registered.
   SurfaceTracker(TrackerOptions options, const SolverOptions& solver,
-                 Energy energy,
+                 SurfaceEnergies energies,
                  AssociationRegistry associations = BuiltinAssociations(),
                  const SolverRegistry& solvers = BuiltinSolvers());
 
@@ -94,11 +95,16 @@ class SurfaceTracker {
   /// the surface was: tracking starts there unless the prediction fits clearly
   /// better, so that a motion which the data do not determine does not carry
   /// itself on. A frame that fails leaves the graph where tracking started; the
-  /// report says why. Returns whether it succeeded.
+  /// report says why. Returns whether it succeeded. `context`: for terms that
+  /// ask for it; its class name decides which energy it is.
   bool Track(const std::vector<ModelSample>& samples,
              const std::vector<TrackedPoint>& tracks, const LiveView& live,
              std::uint16_t surface, const Rigid3d& still,
-             DeformationGraph* graph, SurfaceReport* report) const;
+             DeformationGraph* graph, SurfaceReport* report,
+             const TermContext& context = {}) const;
+
+  /// What is minimised.
+  const SurfaceEnergies& energies() const { return energies_; }
 
  private:
   /// What a surface is compared with in one frame.
@@ -107,6 +113,8 @@ class SurfaceTracker {
     std::uint16_t surface;
     const Associator& associator;
     const std::vector<TrackedPoint>& tracks;
+    const Energy& energy;
+    TermContext context;
   };
 
   double Misfit(const std::vector<ModelSample>& samples, const Target& target,
@@ -116,6 +124,8 @@ class SurfaceTracker {
   bool TrackFrom(const DeformationGraph& start, const Rigid3d& back,
                  const std::vector<ModelSample>& samples, const Target& target,
                  DeformationGraph* graph, SurfaceReport* report) const;
+  /// The rigid stages that a surface of this graph goes through.
+  std::vector<TrackingStage> RigidStagesOf(const DeformationGraph& graph) const;
   void TrackRigid(const std::vector<ModelSample>& samples, const Target& target,
                   const Rigid3d& back, DeformationGraph* graph,
                   SurfaceReport* report) const;
@@ -123,8 +133,9 @@ class SurfaceTracker {
                      const Target& target,
                      const std::vector<NodeMotion>& before,
                      DeformationGraph* graph, SurfaceReport* report) const;
+  /// `stage`: of the samples; `facts`: of the round.
   bool RunRound(const std::vector<ModelSample>& samples, const Target& target,
-                const TrackingStage& stage, const std::string& name,
+                const TrackingStage& stage, const RoundFacts& facts,
                 double anneal, const std::vector<NodeMotion>& before,
                 DeformationGraph* graph, SurfaceReport* report) const;
   std::string ReasonForLoss(const Rigid3d& motion,
@@ -136,7 +147,7 @@ class SurfaceTracker {
   AssociationRegistry associations_;
   std::unique_ptr<Solver> solver_;
   double initial_radius_;
-  Energy energy_;
+  SurfaceEnergies energies_;
 };
 
 }  // namespace splitfusion

@@ -17,12 +17,14 @@
 #include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/number_text.h"
 #include "splitfusion/lib/base/owned_files.h"
+#include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/lib/experiment/settings.h"
 #include "splitfusion/lib/report/library_versions.h"
 #include "splitfusion/lib/report/run_paths.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 
-DEFINE_string(set, "", "KEY=VALUE; ...: any flags, or terms.arap.weight=4.");
+DEFINE_string(set, "",
+              "KEY=VALUE; ...: flags, [CLASS.]terms.arap.weight=4.");
 DEFINE_string(energy, "", "Terms of a paper, by name; see docs/terms.md.");
 DECLARE_string(class_names);
 DECLARE_int32(at);
@@ -96,12 +98,13 @@ void AddFlags(RunIdentity* identity) {
 }
 
 void AddTerms(const TermRegistry& terms, RunIdentity* identity) {
-  const Energy energy = ParseEnergy(MethodFlags().terms, terms);
-  for (const auto& [key, value] : TermOptionValues(energy)) {
-    identity->parts["terms." + key] = value;
-  }
+  const SurfaceEnergies energies =
+      SurfaceEnergies::Parse(MethodFlags().terms, terms);
+  identity->parts.merge(energies.OptionValues());
   std::string order;
-  for (const WeightedTerm& term : energy) order += term.options.name + " ";
+  for (const WeightedTerm& term : energies.all()) {
+    order += term.options.name + " ";
+  }
   order.pop_back();
   identity->parts["terms"] = order;
 }
@@ -170,8 +173,8 @@ void SetFlag(const std::string& key, const std::string& value) {
                      IsRunFlag(flag) && not_set.count(key) == 0;
   if (!known) {
     throw InputError("--set: key '" + key +
-                     "': expected a flag of sf_run, or terms.NAME.KEY "
-                     "(sf_run --help_terms)");
+                     "': expected a flag of sf_run, terms.NAME.KEY "
+                     "(sf_run --help_terms), or CLASS.terms.NAME.KEY");
   }
   if (gflags::SetCommandLineOption(key.c_str(), value.c_str()).empty()) {
     throw InputError("--set: " + key + " = " + value + ": expected a value " +
@@ -198,17 +201,17 @@ void ApplySetFlag(const TermRegistry& terms) {
   if (FLAGS_set.empty()) return ApplyEnergyFlag();
   const Settings settings = ParseSettings(FLAGS_set, "set");
   for (const auto& [key, value] : settings.entries()) {
-    if (key.rfind("terms.", 0) != 0) SetFlag(key, value);
+    if (!IsTermKey(key)) SetFlag(key, value);
   }
   ApplyEnergyFlag();
-  Energy energy = ParseEnergy(MethodFlags().terms, terms);
+  SurfaceEnergies energies = SurfaceEnergies::Parse(MethodFlags().terms, terms);
   bool changed = false;
   for (const auto& [key, value] : settings.entries()) {
-    if (key.rfind("terms.", 0) != 0) continue;
-    SetTermOption(key.substr(6), value, terms, &energy);
+    if (!IsTermKey(key)) continue;
+    energies.Set(key, value, terms);
     changed = true;
   }
-  if (changed) MethodFlags().terms = EnergyText(energy);
+  if (changed) MethodFlags().terms = energies.Text();
   FLAGS_set.clear();  // The options that repeat the run have it resolved.
 }
 

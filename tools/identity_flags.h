@@ -7,8 +7,8 @@
 
 namespace splitfusion {
 
-/// Applies --set: flags of sf_run, and terms.NAME.KEY for one option of the
-/// energy. Before any other flag is read.
+/// Applies --set: flags of sf_run, and terms.NAME.KEY or CLASS.terms.NAME.KEY
+/// for one option of the energy. Before any other flag is read.
 ///
 /// @throw InputError if a key or value is unknown.
 void ApplySetFlag(const TermRegistry& terms);

@@ -10,7 +10,7 @@
 #include "method_flags.h"
 #include "sequence_flags.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/energy/term_registry.h"
+#include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/pipelines/presets.h"
 
 DEFINE_string(preset, "splitfusion", "Method, by name; see docs/presets.md.");
@@ -62,7 +62,7 @@ PipelineOptions PipelineOptionsFromFlags(const Registries& registries) {
   ApplyPreset(FLAGS_preset, &options);
   TakeMethodFlags(&options);
   try {
-    CheckEnergy(ParseEnergy(options.terms, registries.terms));
+    SurfaceEnergies::Parse(options.terms, registries.terms).Check();
   } catch (const OptionError& error) {
     // A text within a text: what is wrong in it names the flag.
     throw InputError(std::string("--terms: ") + error.what());

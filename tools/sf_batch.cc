@@ -66,9 +66,8 @@ constexpr char kUsage[] =
     "[--jobs=N]\n"
     "  sf_batch status --output=DIR     what is done, what failed\n"
     "  sf_batch collect --output=DIR    tables: results.csv, results.sqlite\n"
-    "KEY: a flag of sf_run, or terms.NAME.KEY. A value V with , or ; in "
-    "double\n"
-    "quotes. See docs/experiments.md.\n";
+    "KEY: a flag of sf_run, or [CLASS.]terms.NAME.KEY. A value V with , or ;\n"
+    "in double quotes. See docs/experiments.md.\n";
 
 /// A program beside this one, unless a flag names another.
 std::string Program(const std::string& flag, const std::string& name) {

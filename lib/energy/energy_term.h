@@ -8,6 +8,8 @@
 #include "splitfusion/lib/association/correspondence.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/energy/residual_sink.h"
+#include "splitfusion/lib/energy/term_context.h"
+#include "splitfusion/lib/energy/term_state.h"
 #include "splitfusion/lib/geometry/camera.h"
 
 namespace splitfusion {
@@ -42,6 +44,12 @@ struct EnergyInput {
   /// PointTracks; null where a problem is solved without them.
   const std::vector<TrackedPoint>* tracks = nullptr;
   int surface = 0;  ///< Id; 0 = background.
+  /// Frame, surface, model and round; what is null in it is not known.
+  TermContext context = {};
+  /// Name, weight and loss of the term that is asked; null where none is.
+  const TermOptions* options = nullptr;
+  /// What the term that is asked keeps of the surface; null if that is nothing.
+  const TermState* state = nullptr;
 };
 
 /// One term of the energy (SplitFusion Eq. 4).
@@ -65,6 +73,19 @@ class EnergyTerm {
   /// Adds the residuals of all its points, nodes or edges.
   virtual void AddResiduals(const EnergyInput& input,
                             ResidualSink* sink) const = 0;
+
+  /// Makes what the term keeps of a surface whose model begins: what is costly
+  /// and the same in all rounds of a frame, or goes on from frame to frame.
+  /// Null: nothing. AddResiduals() gets it as EnergyInput::state.
+  virtual std::unique_ptr<TermState> NewState() const { return nullptr; }
+
+  /// Brings the state of a surface up to a frame, before the first round. The
+  /// graph is the surface's own, as it is predicted; there are neither
+  /// correspondences nor EnergyInput::before yet. A surface that is looked for
+  /// a second time in a frame, elsewhere, is prepared a second time, with the
+  /// same FrameFacts::index. Surfaces are prepared on several threads.
+  virtual void Prepare(const EnergyInput& /*input*/,
+                       TermState* /*state*/) const {}
 };
 
 }  // namespace splitfusion

@@ -36,8 +36,8 @@ void CheckComplete(const FrozenProblem& problem,
     }
     if (AreEqual(without[i], with_live[i])) continue;
     throw InputError("term '" + name +
-                     "' looks at the live frame: expected terms that do not, "
-                     "as it is not kept in a frozen problem");
+                     "' looks at the live frame or its context: expected terms "
+                     "that do not, as they are not kept in a frozen problem");
   }
 }
 

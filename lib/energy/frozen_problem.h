@@ -50,8 +50,8 @@ FrozenProblem CopyProblem(const SurfaceProblem& problem,
 
 /// Copies a problem and evaluates its start.
 ///
-/// @throw InputError if a term has another cost without the live frame, which
-///     is not kept.
+/// @throw InputError if a term has another cost without the live frame and
+///     SurfaceProblem::context, which are not kept.
 FrozenProblem Freeze(const SurfaceProblem& problem,
                      const DeformationGraph& graph);
 

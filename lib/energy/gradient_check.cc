@@ -99,6 +99,7 @@ std::vector<GradientError> CheckGradients(const SurfaceProblem& problem,
     part.lost = problem.lost;
     part.tracks = problem.tracks;
     part.surface = problem.surface;
+    part.context = problem.context;
     TermSlopes slopes(part, graph);
     GradientError error{term.options.name};
     std::mt19937 random(1);

@@ -63,6 +63,11 @@ void ProblemRecorder::BeginFrame(int frame) {
 void ProblemRecorder::EndFrame(
     const Write& write,
     const std::function<void(const std::string&)>& refused) {
+  // Terms may be absent in some rounds: what is left is not the last problem.
+  for (const auto& [surface, reason] : refused_) {
+    first_.erase(surface);
+    problems_.erase(surface);
+  }
   for (const auto& [surface, problem] : first_) write(problem, true);
   for (const auto& [surface, problem] : problems_) write(problem, false);
   for (const auto& [surface, reason] : refused_) refused(reason);

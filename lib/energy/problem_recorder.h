@@ -30,8 +30,9 @@ class ProblemRecorder : public std::enable_shared_from_this<ProblemRecorder> {
   /// Receives a problem; `first`: not the last one of its surface.
   using Write = std::function<void(const FrozenProblem&, bool first)>;
 
-  /// Hands over what was kept since BeginFrame(), by id of the surface. Of what
-  /// cannot be frozen `refused` receives why, one line.
+  /// Hands over what was kept since BeginFrame(), by id of the surface. Of one
+  /// with a problem that cannot be frozen nothing is; `refused` receives why,
+  /// one line.
   void EndFrame(const Write& write,
                 const std::function<void(const std::string&)>& refused);
 

@@ -9,16 +9,24 @@
 
 namespace splitfusion {
 
-void ResidualSink::CheckTuples(const std::vector<std::vector<int>>& nodes) {
+void ResidualSink::Count(std::size_t vectors, std::size_t functors,
+                         double total) {
+  CheckOption(functors == vectors, "functors of residuals", functors,
+              "one for each of " + std::to_string(vectors));
+  residual_vectors_ = static_cast<int>(vectors);
+  total_ = total > 0 ? total : static_cast<double>(vectors);
+}
+
+void ResidualSink::CheckTuples(
+    const std::vector<std::vector<int>>& nodes) const {
   for (const std::vector<int>& tuple : nodes) {
+    CheckNodes(tuple.data(), tuple.size(), cache_->nodes());
     for (std::size_t i = 1; i < tuple.size(); ++i) {
-      const auto end = tuple.begin() + i;
+      const auto end = tuple.begin() + static_cast<std::ptrdiff_t>(i);
       if (std::find(tuple.begin(), end, tuple[i]) == end) continue;
-      std::string text;
-      for (const int node : tuple) {
-        text += (text.empty() ? "" : " ") + std::to_string(node);
-      }
-      throw OptionError("nodes of a residual", text, "different nodes");
+      throw OptionError("nodes of a residual",
+                        NodesText(tuple.data(), tuple.size()),
+                        "different nodes");
     }
   }
 }

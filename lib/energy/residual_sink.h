@@ -44,11 +44,14 @@ class ResidualSink {
   /// operator()(const T* warped_point, T* residual) in metres. `total`: N, the
   /// sum of the weights that the functors carry; 0: every one weighs 1. Call it
   /// once.
+  ///
+  /// @throw InputError unless there is a functor for every sample, and every
+  ///     sample is carried by nodes of the graph, ascending.
   template <typename PointFunctor>
   void AddWarpedPoints(const std::vector<const ModelSample*>& samples,
                        const std::vector<PointFunctor>& functors,
                        double total = 0) {
-    Count(samples.size(), total);
+    Count(samples.size(), functors.size(), total);
     if (samples.empty()) return;
     std::vector<PointFunctor> ordered;
     ordered.reserve(functors.size());
@@ -61,13 +64,14 @@ class ResidualSink {
 
   /// Adds one residual vector per tuple of different nodes; `functors[i]` sees
   /// the twists of `nodes[i]` as (T const* const* twists, T* residual), in
-  /// metres. Plain autodiff; N is the number of tuples. Call it once.
+  /// metres. Plain autodiff; `total`: N, as of AddWarpedPoints(). Call it once.
   ///
-  /// @throw InputError if a tuple has a node twice.
+  /// @throw InputError unless there is a functor for every tuple, and every
+  ///     tuple has nodes of the graph, none of them twice.
   template <typename Functor>
   void AddNodes(const std::vector<std::vector<int>>& nodes,
-                const std::vector<Functor>& functors) {
-    Count(nodes.size(), 0);
+                const std::vector<Functor>& functors, double total = 0) {
+    Count(nodes.size(), functors.size(), total);
     if (nodes.empty()) return;
     CheckTuples(nodes);
     residuals_.of_nodes =
@@ -80,16 +84,13 @@ class ResidualSink {
   const TermResiduals& residuals() const { return residuals_; }
 
  private:
-  static void CheckTuples(const std::vector<std::vector<int>>& nodes);
+  void CheckTuples(const std::vector<std::vector<int>>& nodes) const;
 
   /// The samples in the order in which their residuals are kept.
   const std::vector<int>& SetPoints(
       const std::vector<const ModelSample*>& samples);
 
-  void Count(std::size_t vectors, double total) {
-    residual_vectors_ = static_cast<int>(vectors);
-    total_ = total > 0 ? total : static_cast<double>(vectors);
-  }
+  void Count(std::size_t vectors, std::size_t functors, double total);
 
   /// Its weight turns Ceres' 1/2 sum into the term's energy.
   ResidualScaling Scaling() const;

@@ -10,6 +10,7 @@
 #include "splitfusion/lib/base/registry.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/energy/solver_report.h"
+#include "splitfusion/lib/energy/term_context.h"
 #include "splitfusion/lib/energy/term_registry.h"
 #include "splitfusion/lib/geometry/camera.h"
 
@@ -84,7 +85,8 @@ struct SurfaceProblem {
   const std::vector<Correspondence>* lost = nullptr;
   /// As `live`.
   const std::vector<TrackedPoint>* tracks = nullptr;
-  int surface = 0;  ///< Id; 0 = background.
+  int surface = 0;           ///< Id; 0 = background.
+  TermContext context = {};  ///< As EnergyInput::context.
 };
 
 /// A way to minimise energies. Minimize() may run on several threads at once.

@@ -96,59 +96,29 @@ WeightedTerm MakeTerm(const std::string& name, const TermRegistry& registry) {
   return term;
 }
 
-std::string Trimmed(const std::string& text) {
-  const auto begin = text.find_first_not_of(" \t\n");
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(" \t\n") - begin + 1);
-}
-
-void ParseArguments(const std::string& arguments, WeightedTerm* term) {
-  TermKeys keys(term);
-  std::size_t begin = 0;
-  while (begin < arguments.size()) {
-    const std::size_t end =
-        std::min(arguments.find(',', begin), arguments.size());
-    const std::string pair = Trimmed(arguments.substr(begin, end - begin));
-    const std::size_t equals = pair.find('=');
-    if (equals == std::string::npos) {
-      throw InputError("--terms: '" + pair + "' in term '" +
-                       term->options.name + "': expected key=value");
-    }
-    keys.Set(Trimmed(pair.substr(0, equals)), Trimmed(pair.substr(equals + 1)));
-    begin = end + 1;
-  }
-}
-
 }  // namespace
 
-Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
+Energy MakeEnergy(const std::vector<TermText>& terms,
+                  const TermRegistry& registry) {
   Energy energy;
-  std::size_t at = 0;
-  while ((at = text.find_first_not_of(" \t\n", at)) != std::string::npos) {
-    std::size_t end = at;
-    while (end < text.size() &&
-           (std::isalnum(static_cast<unsigned char>(text[end])) ||
-            text[end] == '_')) {
-      ++end;
+  for (const TermText& text : terms) {
+    if (!text.of_class.empty()) {
+      throw InputError("--terms: '" + text.of_class + "." + text.name +
+                       "': expected a term of all surfaces");
     }
-    WeightedTerm term = MakeTerm(text.substr(at, end - at), registry);
-    if (end < text.size() && text[end] == '(') {
-      const std::size_t close = text.find(')', end);
-      if (close == std::string::npos) {
-        throw InputError("--terms: '(' of term '" + term.options.name +
-                         "' is not closed: expected ')'");
-      }
-      ParseArguments(text.substr(end + 1, close - end - 1), &term);
-      end = close + 1;
-    }
-    energy.push_back(std::move(term));
-    at = end;
+    energy.push_back(MakeTerm(text.name, registry));
+    TermKeys keys(&energy.back());
+    for (const auto& [key, value] : text.options) keys.Set(key, value);
   }
   if (energy.empty()) {
     throw InputError("--terms is empty: expected one or more of " +
                      AnyOf(registry.names()));
   }
   return energy;
+}
+
+Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
+  return MakeEnergy(SplitTerms(text), registry);
 }
 
 void CheckEnergy(const Energy& energy) {

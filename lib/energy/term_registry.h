@@ -8,6 +8,7 @@
 
 #include "splitfusion/lib/base/registry.h"
 #include "splitfusion/lib/energy/term_options.h"
+#include "splitfusion/lib/energy/term_text.h"
 
 namespace splitfusion {
 
@@ -34,6 +35,12 @@ using Energy = std::vector<WeightedTerm>;
 /// @throw InputError on an unknown term or key, a value that is not what is
 ///     expected, or a syntax error; says what is known.
 Energy ParseEnergy(const std::string& text, const TermRegistry& registry);
+
+/// The energy of these entries, as ParseEnergy().
+///
+/// @throw InputError as ParseEnergy(), and if one is of a class only.
+Energy MakeEnergy(const std::vector<TermText>& terms,
+                  const TermRegistry& registry);
 
 /// @throw InputError if no term has a weight: nothing would be minimised.
 void CheckEnergy(const Energy& energy);

@@ -10,13 +10,17 @@ namespace splitfusion {
 
 std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
                                           const DeformationGraph& graph) {
-  const EnergyInput input{
-      graph,        problem.correspondences, problem.camera,
-      problem.live, problem.before,          problem.anneal,
-      problem.lost, problem.tracks,          problem.surface};
+  EnergyInput input{graph,          problem.correspondences, problem.camera,
+                    problem.live,   problem.before,          problem.anneal,
+                    problem.lost,   problem.tracks,          problem.surface,
+                    problem.context};
+  const TermStates* states = problem.context.states;
   std::vector<ProblemTerm> terms;
-  WarpedPointsCache cache;
-  for (const WeightedTerm& weighted : problem.energy) {
+  WarpedPointsCache cache(graph.size());
+  for (std::size_t i = 0; i < problem.energy.size(); ++i) {
+    const WeightedTerm& weighted = problem.energy[i];
+    input.options = &weighted.options;
+    input.state = states == nullptr ? nullptr : states->Find(problem.energy, i);
     ResidualSink sink(weighted.options, &cache);
     weighted.term->AddResiduals(input, &sink);
     ProblemTerm term;

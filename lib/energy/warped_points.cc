@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/option_list.h"
 
 namespace splitfusion {
 namespace {
@@ -59,6 +63,28 @@ std::vector<NodeKey> SortedKeys(
     std::sort(keys.begin() + begin[i], keys.begin() + begin[i + 1]);
   }
   return keys;
+}
+
+/// @throw InputError unless it is carried by nodes below `end`, ascending.
+void CheckSample(const ModelSample* sample, int end) {
+  // Of thousands: messages are made when one is wrong, not before.
+  if (sample == nullptr) {
+    throw OptionError("sample of a residual", "null", "a sample");
+  }
+  const Skinning& skinning = sample->skinning;
+  const int count = skinning.count;
+  if (count < 1 || count > kMaxSkinningNodes) {
+    throw OptionError("nodes of a sample", std::to_string(count),
+                      Range{1, kMaxSkinningNodes}.Text());
+  }
+  const int* nodes = skinning.nodes.data();
+  CheckNodes(nodes, count, end);
+  if (std::adjacent_find(nodes, nodes + count, std::greater_equal<>()) ==
+      nodes + count) {
+    return;
+  }
+  throw OptionError("nodes of a sample", NodesText(nodes, count),
+                    "ascending nodes");
 }
 
 }  // namespace
@@ -144,11 +170,49 @@ PointChunk WarpedPoints::Chunk(const Group& group, int begin, int end,
           group.weights + first};
 }
 
+bool WarpedPoints::AreOf(const std::vector<const ModelSample*>& samples) const {
+  for (const Group& group : groups_) {
+    const int size = group.end - group.begin;
+    for (int i = 0; i < size; ++i) {
+      const ModelSample& sample = *samples[source_[group.begin + i]];
+      if (sample.skinning.count != group.node_count) return false;
+      for (int d = 0; d < 3; ++d) {
+        if (group.points[size * d + i] != sample.point[d]) return false;
+      }
+      for (int k = 0; k < group.node_count; ++k) {
+        if (group.nodes[k] != sample.skinning.nodes[k] ||
+            group.weights[size * k + i] != sample.skinning.weights[k]) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+std::string NodesText(const int* nodes, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    text += (i == 0 ? "" : " ") + std::to_string(nodes[i]);
+  }
+  return count == 0 ? "none" : text;
+}
+
+void CheckNodes(const int* nodes, std::size_t count, int end) {
+  const bool good = count > 0 && std::all_of(nodes, nodes + count, [=](int i) {
+                      return 0 <= i && i < end;
+                    });
+  if (good) return;
+  throw OptionError("nodes of a residual", NodesText(nodes, count),
+                    "nodes of a graph of " + std::to_string(end));
+}
+
 std::shared_ptr<const WarpedPoints> WarpedPointsCache::Get(
     const std::vector<const ModelSample*>& samples) {
   for (const auto& [known, points] : entries_) {
-    if (known == samples) return points;
+    if (known == samples && points->AreOf(samples)) return points;
   }
+  for (const ModelSample* sample : samples) CheckSample(sample, nodes_);
   entries_.emplace_back(samples, std::make_shared<WarpedPoints>(samples));
   return entries_.back().second;
 }

@@ -2,7 +2,9 @@
 #define SPLITFUSION_LIB_ENERGY_WARPED_POINTS_H_
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -49,6 +51,10 @@ class WarpedPoints {
   /// For every point, in the order of the class, its place among the samples.
   const std::vector<int>& source() const { return source_; }
 
+  /// Whether they still are the points of these samples, whose memory a term
+  /// may have given back.
+  bool AreOf(const std::vector<const ModelSample*>& samples) const;
+
   /// Points begin..end of a group, at most kWarpedChunk, for the kernels;
   /// `nodes`: the group's nodes in order.
   static PointChunk Chunk(const Group& group, int begin, int end,
@@ -65,10 +71,26 @@ class WarpedPoints {
   std::vector<Group> groups_;
 };
 
+/// The nodes of a residual, for messages: "3 7".
+std::string NodesText(const int* nodes, std::size_t count);
+
+/// @throw InputError unless there is one and all are below `end`, not below 0.
+void CheckNodes(const int* nodes, std::size_t count, int end);
+
 /// The points of a problem's terms: terms of the same samples share them.
 class WarpedPointsCache {
  public:
+  /// `nodes`: number of the graph's.
+  explicit WarpedPointsCache(int nodes = std::numeric_limits<int>::max())
+      : nodes_(nodes) {}
+
+  /// Number of the graph's nodes.
+  int nodes() const { return nodes_; }
+
   /// Points of these samples, made or found.
+  ///
+  /// @throw InputError unless every sample is carried by nodes of the graph,
+  ///     ascending.
   std::shared_ptr<const WarpedPoints> Get(
       const std::vector<const ModelSample*>& samples);
 
@@ -76,6 +98,7 @@ class WarpedPointsCache {
   std::vector<std::pair<std::vector<const ModelSample*>,
                         std::shared_ptr<const WarpedPoints>>>
       entries_;
+  int nodes_;
 };
 
 }  // namespace splitfusion

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/lib/experiment/repeats.h"
 
 namespace splitfusion {
@@ -160,9 +162,9 @@ bool SetsItselfAlone(const std::string& key, const NamedValues& parts) {
 NamedValues PartsBut(const std::set<std::string>& free, NamedValues parts) {
   for (const std::string& key : free) {
     parts.erase(key);
-    if (key == "terms") {
-      const auto first = parts.lower_bound("terms.");
-      parts.erase(first, parts.lower_bound("terms/"));
+    if (key != "terms") continue;
+    for (auto part = parts.begin(); part != parts.end();) {
+      part = IsTermKey(part->first) ? parts.erase(part) : std::next(part);
     }
   }
   return parts;

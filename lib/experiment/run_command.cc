@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/lib/experiment/child_process.h"
 #include "splitfusion/lib/experiment/repeats.h"
 #include "splitfusion/lib/experiment/scratch_folder.h"
@@ -14,8 +15,6 @@ namespace splitfusion {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-bool IsTermKey(const std::string& key) { return key.rfind("terms.", 0) == 0; }
 
 std::string JoinedOptions(const std::vector<std::string>& options) {
   std::string text;

@@ -25,7 +25,7 @@ Settings::Entry SplitEntry(const std::string& entry, const std::string& field) {
   const bool is_key = equal != std::string::npos && !key.empty() &&
                       key.find_first_of(" \t\"-") == std::string::npos;
   CheckOption(is_key, field, "'" + entry + "'",
-              "KEY=VALUE with a flag's name or terms.NAME.KEY");
+              "KEY=VALUE with a flag's name or [CLASS.]terms.NAME.KEY");
   return {key, Trimmed(entry.substr(equal + 1))};
 }
 

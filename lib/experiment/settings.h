@@ -7,8 +7,8 @@
 
 namespace splitfusion {
 
-/// Options of sf_run by key, a flag's name or terms.NAME.KEY, in the order in
-/// which they were given; no key twice.
+/// Options of sf_run by key, a flag's name, terms.NAME.KEY or
+/// CLASS.terms.NAME.KEY, in the order in which they were given; no key twice.
 class Settings {
  public:
   /// Key and value.
@@ -33,7 +33,7 @@ class Settings {
 /// A key with the values that a sweep gives it; a value `lo..hi` or
 /// `log:lo..hi` is a range, for random designs.
 struct Axis {
-  std::string key;                  ///< Flag of sf_run or terms.NAME.KEY.
+  std::string key;  ///< Flag of sf_run or [CLASS.]terms.NAME.KEY.
   std::vector<std::string> values;  ///< At least one.
 };
 

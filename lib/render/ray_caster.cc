@@ -14,6 +14,7 @@
 #include "splitfusion/lib/render/internal/ray_bundle.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
 #include "splitfusion/lib/tsdf/internal/packed_color.h"
+#include "splitfusion/lib/tsdf/trilinear.h"
 
 namespace splitfusion {
 namespace {
@@ -22,12 +23,6 @@ using internal::kLeafSize;
 using internal::kLeafVoxels;
 using internal::LeafPlace;
 using internal::RayBundle;
-
-/// A sample of the volume at a point of index space.
-struct Sample {
-  float distance = 0;
-  Eigen::Vector3f gradient = Eigen::Vector3f::Zero();  // Per voxel.
-};
 
 /// Reads the cubes of eight voxels that rays cross the surface in.
 class CubeReader {
@@ -109,11 +104,11 @@ class Refiner {
     float place = t - 0.5f * voxel_step;
     constexpr int kRefinements = 2;  // Maths: Newton's method converges.
     for (int i = 0; i < kRefinements; ++i) {
-      Sample sample;
+      TrilinearSample sample;
       if (!Interpolate(origin_ + place * step, &sample)) return 0;
       const float slope = sample.gradient.dot(step);
       if (!(slope < 0)) return 0;
-      place -= std::clamp(sample.distance / slope, -reach, reach);
+      place -= std::clamp(sample.value / slope, -reach, reach);
       *gradient = sample.gradient;
     }
     return std::abs(place - t) <= reach ? place : 0;
@@ -126,7 +121,7 @@ class Refiner {
 
  private:
   /// Trilinear sample with its gradient; false where a voxel is unobserved.
-  bool Interpolate(const Eigen::Vector3f& p, Sample* sample) const {
+  bool Interpolate(const Eigen::Vector3f& p, TrilinearSample* sample) const {
     const int x0 = FloorToInt(p.x());
     const int y0 = FloorToInt(p.y());
     const int z0 = FloorToInt(p.z());
@@ -135,21 +130,7 @@ class Refiner {
                             static_cast<float>(z0));
     float value[2][2][2];
     if (!cubes_.Read(x0, y0, z0, value)) return false;
-    const auto mix = [](float a, float b, float w) { return a + w * (b - a); };
-    float by_x[2], slab[2][2], dz[2];
-    for (int x = 0; x < 2; ++x) {
-      for (int y = 0; y < 2; ++y) {
-        slab[x][y] = mix(value[x][y][0], value[x][y][1], f.z());
-      }
-      by_x[x] = mix(slab[x][0], slab[x][1], f.y());
-      dz[x] = mix(value[x][0][1] - value[x][0][0],
-                  value[x][1][1] - value[x][1][0], f.y());
-    }
-    sample->distance = mix(by_x[0], by_x[1], f.x());
-    sample->gradient.x() = by_x[1] - by_x[0];
-    sample->gradient.y() =
-        mix(slab[0][1] - slab[0][0], slab[1][1] - slab[1][0], f.x());
-    sample->gradient.z() = mix(dz[0], dz[1], f.x());
+    *sample = MixTrilinear(value, f);
     return true;
   }
 

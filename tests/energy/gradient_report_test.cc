@@ -7,7 +7,9 @@
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/energy/gradient_check.h"
+#include "splitfusion/lib/energy/surface_history.h"
 #include "support/sample_correspondences.h"
+#include "support/sample_depth.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 
@@ -56,10 +58,12 @@ class GradientReport : public ::testing::Test {
     correspondences_ = PerfectAssociation(
         mesh_, graph_,
         [](const Eigen::Vector3d& p) { return Bend(p, 1, 2.0); });
+    const Eigen::Matrix3f turn =
+        ExpSo3(Eigen::Vector3d(0.1, -0.2, 0)).cast<float>();
     for (Correspondence& c : correspondences_) {
       c.intensity_difference = 0.05f;
       c.intensity_gradient = {0.02f, -0.01f};
-      c.target_normal = c.warped_normal;
+      c.target_normal = turn * c.warped_normal;
     }
     tracks_.resize(5);
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -68,6 +72,11 @@ class GradientReport : public ::testing::Test {
     }
     lost_.assign(correspondences_.begin(), correspondences_.begin() + 9);
     before_.assign(graph_.size(), NodeMotion());
+    motions_.frames = {{0, true, before_}, {1, true, before_}};
+    const DepthObservation wall =
+        ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1));
+    AllocateBand(wall, Rigid3d::Identity(), &volume_);
+    IntegrateRigid(wall, Rigid3d::Identity(), &volume_);
   }
 
   std::vector<GradientError> Check(const std::string& energy) const {
@@ -77,6 +86,14 @@ class GradientReport : public ::testing::Test {
     problem.anneal = 2;
     problem.lost = &lost_;
     problem.tracks = &tracks_;
+    const SurfaceHistory history({graph_, motions_});
+    const FrameFacts frame{/*index=*/2};
+    problem.context.frame = &frame;
+    problem.context.history = &history;
+    SurfaceFacts surface;
+    surface.volume = &volume_;
+    problem.context.surface = &surface;
+    problem.context.round.rigid = false;
     return CheckGradients(problem, graph_);
   }
 
@@ -87,6 +104,8 @@ class GradientReport : public ::testing::Test {
   std::vector<Correspondence> correspondences_, lost_;
   std::vector<TrackedPoint> tracks_;
   std::vector<NodeMotion> before_;
+  MotionHistory motions_;
+  TsdfVolume volume_{TsdfOptions{/*voxel_size=*/0.02, /*truncation=*/0.2}};
 };
 
 TEST_F(GradientReport, TermsOfTheToolkitAreRight) {
@@ -95,6 +114,7 @@ TEST_F(GradientReport, TermsOfTheToolkitAreRight) {
     energy += name + "(loss=tukey,scale=0.1) ";
   }
   for (const GradientError& error : Check(energy)) {
+    EXPECT_GT(error.residuals, 0) << error.term;
     EXPECT_LT(error.relative, 1e-6) << error.term;
     EXPECT_EQ(error.failed, 0) << error.term;
   }

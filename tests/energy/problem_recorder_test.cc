@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/frame/live_view.h"
 #include "support/sample_correspondences.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
@@ -89,6 +91,48 @@ TEST_F(ProblemRecorderTest, OtherFramesAreNotRecorded) {
   recorder_->BeginFrame(6);
   Solve(1, &graph);
   EXPECT_TRUE(Recorded().empty());
+}
+
+/// Looks at the live frame where there is one.
+class LiveTerm : public EnergyTerm {
+ public:
+  struct Pull {
+    static constexpr int kResiduals = 1;
+    template <typename T>
+    bool operator()(T const* const* twists, T* residual) const {
+      residual[0] = twists[0][3] + T(1);
+      return true;
+    }
+  };
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    if (input.live != nullptr) sink->AddNodes({{0}}, std::vector<Pull>(1));
+  }
+};
+
+TEST_F(ProblemRecorderTest, OfASurfaceThatIsRefusedNothingIsKept) {
+  TermRegistry terms = BuiltinTerms();
+  terms.Register("live", [] { return std::make_unique<LiveTerm>(); });
+  const Energy energy = ParseEnergy("point_to_plane arap live", terms);
+  const LiveView live;
+  SurfaceProblem problem{energy, correspondences_, camera_};
+  problem.surface = 1;
+  const auto solver = solvers_.Make("gn_pcg", SolverOptions());
+  recorder_->BeginFrame(5);
+  DeformationGraph graph = graph_;
+  solver->Minimize(problem, &graph);
+  problem.live = &live;
+  solver->Minimize(problem, &graph);
+  problem.surface = 2;
+  problem.live = nullptr;
+  solver->Minimize(problem, &graph);
+  std::vector<int> kept;
+  int refused = 0;
+  recorder_->EndFrame([&](const FrozenProblem& frozen,
+                          bool) { kept.push_back(frozen.surface); },
+                      [&](const std::string&) { ++refused; });
+  EXPECT_EQ(kept, (std::vector<int>{2, 2}));
+  EXPECT_EQ(refused, 1);
 }
 
 }  // namespace

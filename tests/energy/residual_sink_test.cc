@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "splitfusion/lib/energy/ceres_blocks.h"
 #include "splitfusion/lib/energy/warped_points.h"
 #include "support/expect_input_error.h"
@@ -151,6 +153,76 @@ TEST(ResidualSink, ATupleMustNotRepeatANode) {
         sink.AddNodes({{0, 1}, {2, 2}}, std::vector<Constant>(2));
       },
       "nodes of a residual = 2 2: expected different nodes");
+}
+
+TEST(ResidualSink, NodesMustBeThoseOfTheGraph) {
+  const TermOptions options;
+  WarpedPointsCache cache(/*nodes=*/3);
+  ResidualSink sink(options, &cache);
+  const std::string expected = ": expected nodes of a graph of 3";
+  const auto refused = [&](const std::vector<int>& tuple,
+                           const std::string& text) {
+    ExpectInputError(
+        [&] {
+          sink.AddNodes({{0, 2}, tuple}, std::vector<Constant>(2));
+        },
+        "nodes of a residual = " + text + expected);
+  };
+  refused({1, 3}, "1 3");
+  refused({-1}, "-1");
+  refused({}, "none");
+}
+
+TEST(ResidualSink, SamplesMustBeCarriedByNodesOfTheGraph) {
+  const TermOptions options;
+  WarpedPointsCache cache(/*nodes=*/3);
+  ResidualSink sink(options, &cache);
+  const auto refused = [&](int count, const std::vector<int>& nodes,
+                           const std::string& message) {
+    ModelSample sample = SampleAt(1);
+    sample.skinning.count = count;
+    std::copy(nodes.begin(), nodes.end(), sample.skinning.nodes.begin());
+    ExpectInputError(
+        [&] { sink.AddWarpedPoints({&sample}, std::vector<DepthError>(1)); },
+        message);
+  };
+  refused(1, {3}, "nodes of a residual = 3: expected nodes of a graph of 3");
+  refused(2, {-4, 1}, "nodes of a residual = -4 1: expected nodes of");
+  refused(2, {2, 1}, "nodes of a sample = 2 1: expected ascending nodes");
+  refused(0, {0}, "nodes of a sample = 0: expected 1..8");
+  refused(9, {0}, "nodes of a sample = 9: expected 1..8");
+  ExpectInputError(
+      [&] { sink.AddWarpedPoints({nullptr}, std::vector<DepthError>(1)); },
+      "sample of a residual = null: expected a sample");
+}
+
+TEST(ResidualSink, ThereIsAFunctorForEverything) {
+  const TermOptions options;
+  WarpedPointsCache cache;
+  ResidualSink sink(options, &cache);
+  const ModelSample sample = SampleAt(1);
+  ExpectInputError(
+      [&] { sink.AddWarpedPoints({&sample}, std::vector<DepthError>(2)); },
+      "functors of residuals = 2: expected one for each of 1");
+  ExpectInputError(
+      [&] {
+        sink.AddNodes({{0}, {1}}, std::vector<Constant>(1));
+      },
+      "functors of residuals = 1: expected one for each of 2");
+}
+
+TEST(ResidualSink, SamplesOfTheSameMemoryAreOthersIfTheyChange) {
+  const TermOptions options;
+  WarpedPointsCache cache;
+  ModelSample sample = SampleAt(1);
+  const auto points = cache.Get({&sample});
+  EXPECT_EQ(cache.Get({&sample}), points);
+  sample.point.x() = 0.5f;
+  EXPECT_NE(cache.Get({&sample}), points);
+  sample.point.x() = 0;
+  EXPECT_EQ(cache.Get({&sample}), points);
+  sample.skinning.nodes[0] = 1;
+  EXPECT_NE(cache.Get({&sample}), points);
 }
 
 }  // namespace

@@ -166,6 +166,25 @@ TEST(ResultStatistics, PartnersHaveTheSameResolvedOptions) {
   EXPECT_EQ(CompareWithBaseline(table, "weight=8").unpaired, 1);
 }
 
+TEST(ResultStatistics, TermsAreAllTheirOptions) {
+  ResultTable table;
+  table.keys = {"terms"};
+  for (const std::string weight : {"4", "8"}) {
+    ResultRow& row = table.rows.emplace_back(Row("a", weight, 0, 0.01));
+    row.task.settings = Settings();
+    row.task.settings.Set("terms", "arap person.arap(weight=" + weight + ")");
+    row.task.design = {"terms"};
+    row.values = {*row.task.settings.Find("terms")};
+    row.parts = {{"terms", "arap"},
+                 {"terms.arap.weight", "1"},
+                 {"person.terms.arap.weight", weight}};
+  }
+  const std::string baseline = "terms=\"" + table.rows[0].values[0] + "\"";
+  EXPECT_EQ(CompareWithBaseline(table, baseline).unpaired, 0);
+  table.rows[1].parts["lambda"] = "2";
+  EXPECT_EQ(CompareWithBaseline(table, baseline).unpaired, 1);
+}
+
 TEST(ResultStatistics, AForeignRowIsComparedIfItIsClearWithWhat) {
   ResultTable table = TwoKeys("x", {{"8", "1"}, {"4", "1"}});
   for (ResultRow& row : table.rows) row.identity = "known";

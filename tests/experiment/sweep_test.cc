@@ -43,6 +43,14 @@ TEST_F(SweepTest, RunsAndEvaluatesEveryTask) {
               HasSubstr("terms.arap.weight=4"));
 }
 
+TEST_F(SweepTest, OptionsOfAClassAreSetAsThoseOfAll) {
+  AddSequence("room");
+  experiment_.grid = ParseGrid("person.terms.arap.weight=4,8", "grid");
+  EXPECT_EQ(Sweep().failed, 0);
+  EXPECT_THAT(folder_.Read(InRun(1, "run.json")),
+              HasSubstr("\"set\": \"person.terms.arap.weight=8\""));
+}
+
 TEST_F(SweepTest, FinishedRunsAndTheirEvaluationsAreKept) {
   AddSequence("room", "true");
   Sweep();

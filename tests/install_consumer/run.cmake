@@ -47,6 +47,21 @@ if(NOT library STREQUAL program)
   message(FATAL_ERROR "library and program differ: ${library}\n${program}")
 endif()
 
+# A term over three frames, of persons only.
+run("${bin}/sf_run"
+    "--terms_library=${stretch}/libstretch.so,${stretch}/libsteady.so"
+    "--set=person.terms.steady.weight=2" "--output=${STAGE_DIR}/steady"
+    "--sequence=${STAGE_DIR}/sequence")
+file(STRINGS "${STAGE_DIR}/steady/frames.jsonl" frames)
+foreach(frame RANGE 2)
+  list(GET frames ${frame} line)
+  string(REGEX MATCH
+    "\"term\": ?\"steady\", ?\"residual_vectors\": ?[1-9]" found "${line}")
+  if((frame LESS 2 AND found) OR (frame EQUAL 2 AND NOT found))
+    message(FATAL_ERROR "frame ${frame}: residuals of steady: '${found}'")
+  endif()
+endforeach()
+
 # What the library holds decides the result, and not where it lies.
 function(identity library result)
   run("${bin}/sf_run" "--terms_library=${library}" --print_identity

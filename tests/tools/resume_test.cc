@@ -254,6 +254,8 @@ TEST_F(Resume, SetChangesOneNumberAndIsResolved) {
   for (const auto& [set, part] :
        std::vector<std::pair<std::string, std::string>>{
            {"terms.nosuch.weight=4", "nosuch"},
+           {"person.terms.nosuch.weight=4", "nosuch"},
+           {"person.arap.weight=4", "CLASS.terms.NAME.KEY"},
            {"terms.arap.colour=4", "colour"},
            {"terms.arap.weight=heavy", "heavy"},
            {"nosuch=1", "nosuch"},
@@ -264,6 +266,32 @@ TEST_F(Resume, SetChangesOneNumberAndIsResolved) {
     EXPECT_EQ(result.exit_code, 2) << set;
     EXPECT_THAT(result.errors, HasSubstr(part));
   }
+}
+
+TEST_F(Resume, OptionsOfAClassAreAPartOfTheRun) {
+  const std::string options =
+      std::string(kOptions) +
+      " \"--set=person.terms.arap.weight=2; dog.terms.arap.weight=3\"";
+  const ProgramResult whole = Run("whole", options);
+  ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+  EXPECT_THAT(whole.errors,
+              HasSubstr("terms of class dog had no effect: there are surfaces "
+                        "of background"));
+  EXPECT_THAT(folder_.Read("whole/options.flags"),
+              HasSubstr(" dog.arap(weight=3) person.arap(weight=2)\n"));
+  ASSERT_TRUE(Stop("run", options, 8, SIGKILL));
+  ASSERT_EQ(Run("run", options).exit_code, 0);
+  ExpectSameResult("whole", "run");
+  const ProgramResult again =
+      RunProgram("sf_run", "--flagfile=" + (folder_ / "whole/options.flags") +
+                               " --output=" + (folder_ / "whole"));
+  EXPECT_THAT(again.output, HasSubstr("nothing to do"));
+  const ProgramResult other = Run("run", kOptions);
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.errors, HasSubstr("person.terms.arap.weight 2 -> "));
+  ASSERT_EQ(Run("plain", kOptions).exit_code, 0);
+  EXPECT_NE(folder_.Read("plain/surfaces/001_person/motions.bin"),
+            folder_.Read("whole/surfaces/001_person/motions.bin"));
 }
 
 TEST_F(Resume, OneStateCanBeGoneOnFromWithOtherTerms) {

@@ -11,10 +11,12 @@
 
 #include "sf_run_fixture.h"
 #include "support/expect_refused.h"
+#include "support/repository.h"
 
 namespace splitfusion {
 namespace {
 
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 /// Fields of every line of a CSV file without quotes.
@@ -119,6 +121,28 @@ TEST_F(SfSolve, OthersCanSolveTheFiles) {
     EXPECT_LT(std::stod(result.output.substr(at + 15)), 1e-12);
     EXPECT_THAT(result.output, HasSubstr("CONVERGENCE"));
   }
+}
+
+TEST_F(SfSolve, SolvesTheProblemsOfTheExamples) {
+  const std::string folder = RepositoryRoot() / "examples/problems/";
+  std::string list;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".h5") list += entry.path().string() + " ";
+  }
+  const ProgramResult result =
+      RunProgram("sf_solve", list +
+                                 "--solvers=gn_pcg,"
+                                 "ceres:sparse_normal_cholesky --output=" +
+                                 (folder_ / "out"));
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("5 problems; their first costs"));
+  const auto rows = Csv(folder_.Read("out/solvers.csv"));
+  ASSERT_EQ(rows.size(), 1u + 5 * 2);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_THAT(rows[i][6], AnyOf("converged", "other_minimum")) << rows[i][0];
+  }
+  if (!HasProgram("solve_frozen")) GTEST_SKIP() << "solve_frozen is not built";
+  EXPECT_EQ(RunProgram("solve_frozen", folder + "000005_001.h5").exit_code, 0);
 }
 
 TEST_F(SfSolve, ChecksTheDerivativesOfARun) {

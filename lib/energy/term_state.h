@@ -1,0 +1,60 @@
+#ifndef SPLITFUSION_LIB_ENERGY_TERM_STATE_H_
+#define SPLITFUSION_LIB_ENERGY_TERM_STATE_H_
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "splitfusion/lib/energy/term_registry.h"
+
+namespace splitfusion {
+
+struct EnergyInput;
+
+/// What a term keeps of one surface, from frame to frame or for the rounds of
+/// one frame; see EnergyTerm::NewState().
+class TermState {
+ public:
+  virtual ~TermState() = default;
+
+  /// What later frames depend on, as bytes for a checkpoint; empty if that is
+  /// nothing, as where all is prepared anew in every frame.
+  virtual std::string Save() const = 0;
+  /// Makes a new state what Save() has kept.
+  ///
+  /// @throw InputError if the bytes are none of that.
+  virtual void Load(const std::string& bytes) = 0;
+};
+
+/// What the terms of an energy keep of one surface.
+class TermStates {
+ public:
+  /// Prepares the states of all terms that have one for the rounds of a frame,
+  /// see EnergyTerm::Prepare(); new ones are made.
+  void Prepare(const Energy& energy, const EnergyInput& input);
+
+  /// That of the i-th term of an energy; null if it has none.
+  const TermState* Find(const Energy& energy, std::size_t i) const;
+
+  /// Saves or restores them, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    std::map<std::string, std::string> saved = Save();
+    (*archive)(saved);
+    if constexpr (Archive::kReads) {
+      states_.clear();
+      saved_ = std::move(saved);
+    }
+  }
+
+ private:
+  std::map<std::string, std::string> Save() const;
+
+  std::map<std::string, std::unique_ptr<TermState>> states_;  // By NameOf().
+  /// Restored, of terms that have not been prepared since.
+  std::map<std::string, std::string> saved_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_ENERGY_TERM_STATE_H_
