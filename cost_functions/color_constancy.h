@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <vector>
 
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/correspondence_residuals.h"
@@ -45,33 +46,93 @@ struct ColorConstancy {
   }
 };
 
+/// The same where the live image may be brighter or darker than the model, and
+/// of more or less contrast, by a gain g and an offset b that are estimated:
+///
+///   r = m sqrt(c) [ I(pi(x)) - g I_m - b ]
+///
+/// The gain is on the model's side: its grey values are means of many frames,
+/// while noise of the live ones would draw their factor to 0, and with it all
+/// that the residual says of the motion.
+struct ExposedColorConstancy {
+  /// Residuals of one point.
+  static constexpr int kResiduals = 1;  // Layout.
+  static constexpr int kUnknowns = 2;   // Layout: g, b.
+  ColorConstancy color;                 ///< With g = 1, b = 0.
+  double model_intensity = 0;           ///< I_m, 0..1.
+
+  /// `x`: warped point, camera frame, metres; `unknowns`: g, b.
+  template <typename T>
+  bool operator()(const T* x, const T* unknowns, T* residual) const {
+    if (!color(x, residual)) return false;
+    residual[0] -= T(color.metres * color.sqrt_confidence) *
+                   ((unknowns[0] - T(1)) * T(model_intensity) + unknowns[1]);
+    return true;
+  }
+};
+
+/// Prior of these, r = m [ g - 1, b ]: it weighs as much as one more point of
+/// confidence 1, and so decides only what the points leave open, as those of a
+/// surface of one colour, which do not tell g from b.
+struct ExposurePrior {
+  /// Residuals.
+  static constexpr int kResiduals = 2;  // Layout.
+  static constexpr int kUnknowns = 2;   // Layout: g, b.
+  double metres = 0;                    ///< m.
+
+  /// `unknowns`: g, b.
+  template <typename T>
+  bool operator()(const T* unknowns, T* residual) const {
+    residual[0] = T(metres) * (unknowns[0] - T(1));
+    residual[1] = T(metres) * unknowns[1];
+    return true;
+  }
+};
+
 /// Colour constancy over all correspondences.
 class ColorConstancyTerm : public EnergyTerm {
  public:
   void List(OptionList* list) override {
     list->Number("metres", &metres_, Range::Above(0), "metres",
                  "That a difference from black to white counts for.");
+    list->Switch("exposure", &exposure_,
+                 "Gain and offset of the brightness are estimated with the "
+                 "motion, of each surface and frame.");
+  }
+
+  std::vector<Unknown> Unknowns() const override {
+    if (!exposure_) return {};
+    return {{"gain", "", 1}, {"offset", "grey value", 0}};
   }
 
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
     const Eigen::Vector2d focal(input.camera.fx, input.camera.fy);
     const Eigen::Vector2d principal(input.camera.cx, input.camera.cy);
+    const auto color = [&](const Correspondence& c) -> ColorConstancy {
+      return {focal,
+              principal - c.pixel.cast<double>(),
+              c.intensity_gradient.cast<double>(),
+              c.intensity_difference,
+              std::sqrt(c.weight),
+              metres_};
+    };
+    if (!exposure_) {
+      AddCorrespondenceResiduals(input.correspondences, color, sink);
+      return;
+    }
     AddCorrespondenceResiduals(
         input.correspondences,
-        [&](const Correspondence& c) -> ColorConstancy {
-          return {focal,
-                  principal - c.pixel.cast<double>(),
-                  c.intensity_gradient.cast<double>(),
-                  c.intensity_difference,
-                  std::sqrt(c.weight),
-                  metres_};
+        [&](const Correspondence& c) -> ExposedColorConstancy {
+          return {color(c), c.model_intensity};
         },
         sink);
+    sink->AddUnknowns(std::vector<ExposurePrior>{{metres_}});
   }
 
  private:
   double metres_ = 0.05;
+  bool exposure_ = false;
 };
 
 }  // namespace splitfusion

@@ -83,6 +83,20 @@ double StartRadius(const std::vector<TrackingRound>& rounds,
                        : std::min(first, steps.back().trust_region_radius);
 }
 
+/// Values at which a round's solve begins to look for the terms' own unknowns:
+/// those of the round before, of whatever stage; none in the first round.
+std::vector<double> StartUnknowns(const std::vector<TrackingRound>& rounds) {
+  std::vector<double> values;
+  for (auto round = rounds.rbegin(); round != rounds.rend(); ++round) {
+    if (!round->solver.usable) continue;
+    for (const UnknownEstimate& unknown : round->solver.unknowns) {
+      values.push_back(unknown.final);
+    }
+    break;
+  }
+  return values;
+}
+
 /// Whether the last step raised the cost and was not taken: a shorter one may
 /// lower it.
 bool WasTooLong(const SolverReport& report) {
@@ -353,7 +367,8 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
          options_.keep_radius
              ? StartRadius(report->rounds, name, initial_radius_)
              : initial_radius_,
-         &association.lost, &target.tracks, target.surface},
+         &association.lost, &target.tracks, target.surface,
+         StartUnknowns(report->rounds)},
         graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

@@ -7,10 +7,23 @@
 #include <vector>
 
 #include "splitfusion/lib/energy/residual_scaling.h"
+#include "splitfusion/lib/energy/unknown.h"
 
 namespace splitfusion {
 
-/// The residuals of one term as functions of warped points.
+/// Where the values of points go, with room for dims() * count numbers a
+/// column.
+struct PointValues {
+  double* residuals = nullptr;  ///< dims() a point.
+  /// Derivatives by the warped point, 3 dims() a point; null: none are wanted.
+  double* by_point = nullptr;
+  /// Derivatives by the term's own unknowns, if it has any and `by_point` is
+  /// not null: a column of dims() * count numbers each.
+  double* by_unknowns = nullptr;
+};
+
+/// The residuals of one term as functions of warped points, and of the term's
+/// own unknowns.
 class PointResiduals {
  public:
   /// All share one scaling.
@@ -20,14 +33,16 @@ class PointResiduals {
 
   /// Residuals of one point.
   virtual int dims() const = 0;
+  /// Number of unknowns of the term's own that they depend on.
+  virtual int unknowns() const { return 0; }
 
   /// Evaluates `count` points from `first` on, in the order of WarpedPoints;
-  /// `warped` are their warped positions (three a point, metres). Residuals and
-  /// derivatives by the warped point (dims() and 3 dims() a point; `by_point`
-  /// may be null) are scaled, see ResidualScaling; the cost is added to `cost`.
-  /// False if a functor refuses.
+  /// `warped` are their warped positions (three a point, metres), `unknowns`
+  /// the term's own in units of their scales. Residuals and derivatives are
+  /// scaled, see ResidualScaling; the cost is added to `cost`. False if a
+  /// functor refuses.
   virtual bool Evaluate(int first, int count, const double* warped,
-                        double* residuals, double* by_point,
+                        const double* unknowns, const PointValues& values,
                         double* cost) const = 0;
 
   /// Units, loss and weight.
@@ -53,14 +68,16 @@ class PointResidualsOf : public PointResiduals {
 
   int dims() const override { return kDims; }
 
-  bool Evaluate(int first, int count, const double* warped, double* residuals,
-                double* by_point, double* cost) const override {
+  bool Evaluate(int first, int count, const double* warped,
+                const double* /*unknowns*/, const PointValues& values,
+                double* cost) const override {
     for (int i = 0; i < count; ++i) {
       const PointFunctor& functor = functors_[first + i];
       const double* x = warped + 3 * i;
-      double* r = residuals + kDims * i;
-      double* derivative =
-          by_point == nullptr ? nullptr : by_point + 3 * kDims * i;
+      double* r = values.residuals + kDims * i;
+      double* derivative = values.by_point == nullptr
+                               ? nullptr
+                               : values.by_point + 3 * kDims * i;
       const bool defined = derivative == nullptr
                                ? functor(x, r)
                                : Differentiate(functor, x, r, derivative);
@@ -85,6 +102,87 @@ class PointResidualsOf : public PointResiduals {
   }
 
   std::vector<PointFunctor> functors_;
+};
+
+/// The same of a functor with unknowns: kResiduals, kUnknowns, and
+/// operator()(const T* warped_point, const T* unknowns, T* residual).
+template <typename PointFunctor>
+class PointResidualsWithUnknownsOf : public PointResiduals {
+ public:
+  /// Residuals of one point.
+  static constexpr int kDims = PointFunctor::kResiduals;
+  /// Unknowns of the term.
+  static constexpr int kUnknowns = PointFunctor::kUnknowns;
+
+  /// `functors[i]` belongs to point i of WarpedPoints; `scales`: of the
+  /// unknowns.
+  PointResidualsWithUnknownsOf(std::vector<PointFunctor> functors,
+                               std::vector<double> scales,
+                               ResidualScaling scaling)
+      : PointResiduals(std::move(scaling)),
+        functors_(std::move(functors)),
+        scales_(std::move(scales)) {}
+
+  int dims() const override { return kDims; }
+  int unknowns() const override { return kUnknowns; }
+
+  bool Evaluate(int first, int count, const double* warped,
+                const double* unknowns, const PointValues& values,
+                double* cost) const override {
+    const auto own = internal::ValuesOf<kUnknowns>(scales_, unknowns);
+    const auto jets = internal::JetsOf<kColumns, kUnknowns>(scales_, unknowns,
+                                                            /*first=*/3);
+    const bool differentiate = values.by_point != nullptr;
+    double joint[kDims * kColumns];
+    for (int i = 0; i < count; ++i) {
+      const PointFunctor& functor = functors_[first + i];
+      const double* x = warped + 3 * i;
+      double* r = values.residuals + kDims * i;
+      const bool defined =
+          differentiate ? Differentiate(functor, x, jets.data(), r, joint)
+                        : functor(x, own.data(), r);
+      if (!defined) return false;
+      *cost +=
+          scaling().Apply(kDims, kColumns, r, differentiate ? joint : nullptr);
+      if (differentiate) Split(joint, i, kDims * count, values);
+    }
+    return true;
+  }
+
+ private:
+  /// Of the joint Jacobian: by the point, then by the unknowns.
+  static constexpr int kColumns = 3 + kUnknowns;  // Layout.
+  using JointJet = ceres::Jet<double, kColumns>;
+
+  static bool Differentiate(const PointFunctor& functor, const double* x,
+                            const JointJet* unknowns, double* residual,
+                            double* joint) {
+    const JointJet point[3] = {{x[0], 0}, {x[1], 1}, {x[2], 2}};
+    JointJet value[kDims];
+    if (!functor(point, unknowns, value)) return false;
+    for (int d = 0; d < kDims; ++d) {
+      residual[d] = value[d].a;
+      for (int e = 0; e < kColumns; ++e)
+        joint[kColumns * d + e] = value[d].v[e];
+    }
+    return true;
+  }
+
+  /// Brings the joint Jacobian of a point where its parts go; `rows`: of all
+  /// points.
+  static void Split(const double* joint, int point, int rows,
+                    const PointValues& values) {
+    for (int d = 0; d < kDims; ++d, joint += kColumns) {
+      const int row = kDims * point + d;
+      for (int e = 0; e < 3; ++e) values.by_point[3 * row + e] = joint[e];
+      for (int u = 0; u < kUnknowns; ++u) {
+        values.by_unknowns[rows * u + row] = joint[3 + u];
+      }
+    }
+  }
+
+  std::vector<PointFunctor> functors_;
+  std::vector<double> scales_;
 };
 
 }  // namespace splitfusion

@@ -35,7 +35,9 @@ using Energy = std::vector<WeightedTerm>;
 ///     expected, or a syntax error; says what is known.
 Energy ParseEnergy(const std::string& text, const TermRegistry& registry);
 
-/// @throw InputError if no term has a weight: nothing would be minimised.
+/// @throw InputError if no term has a weight: nothing would be minimised; or
+///     on unknowns of a term without a name, of one name, or with values that
+///     are none.
 void CheckEnergy(const Energy& energy);
 
 /// Text that ParseEnergy() reads back, every option spelled out.

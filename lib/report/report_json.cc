@@ -24,6 +24,14 @@ void to_json(Json& json, const TermCost& term) {
           {"final", term.final}};
 }
 
+void to_json(Json& json, const UnknownEstimate& unknown) {
+  json = {{"term", unknown.term},
+          {"name", unknown.name},
+          {"unit", unknown.unit},
+          {"initial", unknown.initial},
+          {"final", unknown.final}};
+}
+
 void to_json(Json& json, const SolverReport& solver) {
   json = {{"usable", solver.usable},
           {"termination", solver.termination},
@@ -38,15 +46,13 @@ void to_json(Json& json, const SolverReport& solver) {
            {{"jacobian", solver.jacobian_seconds},
             {"linear_solver", solver.linear_solver_seconds},
             {"total", solver.total_seconds}}}};
+  if (!solver.unknowns.empty()) json["unknowns"] = solver.unknowns;
 }
 
 void to_json(Json& json, const TrackingRound& round) {
-  json = {{"stage", round.stage},
-          {"stride", round.stride},
-          {"anneal", round.anneal},
-          {"association", round.association},
-          {"lost_pairs", round.lost_pairs},
-          {"solver", round.solver}};
+  json = {{"stage", round.stage},           {"stride", round.stride},
+          {"anneal", round.anneal},         {"association", round.association},
+          {"lost_pairs", round.lost_pairs}, {"solver", round.solver}};
 }
 
 void to_json(Json& json, const SurfaceReport& surface) {
