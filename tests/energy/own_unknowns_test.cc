@@ -159,8 +159,9 @@ TEST(OwnUnknowns, DoNotDependOnTheNumberOfThreads) {
 
 TEST(OwnUnknowns, OnesThatNothingDependsOnStay) {
   const BrighterSurface surface = Corner();
-  const Energy energy = ParseEnergy(
-      "point_to_plane color(weight=0,exposure=1) arap", TermsWithDepthScale());
+  const Energy energy =
+      ParseEnergy("point_to_plane color(weight=0,exposure=true) arap",
+                  TermsWithDepthScale());
   for (const char* solver : {"gn_pcg", "gn_cholesky", "ceres"}) {
     SurfaceProblem problem = surface.Problem(energy);
     problem.unknowns = {1.25, 0.5};

@@ -125,10 +125,11 @@ class ReportFormat : public testing::Test {
     if (!HasProgram("sf_synth") || !HasProgram("sf_run")) return;
     RunProgram("sf_synth", "--width=160 --height=120 --frames=4 --output=" +
                                (*folder_ / "sequence"));
-    const ProgramResult run =
-        RunProgram("sf_run", "--pictures_every=0 --warped_every=0 --sequence=" +
-                                 (*folder_ / "sequence") +
-                                 " --output=" + (*folder_ / "run"));
+    const ProgramResult run = RunProgram(
+        "sf_run",
+        "--pictures_every=0 --warped_every=0 "
+        "--set=terms.color.exposure=true --sequence=" +
+            (*folder_ / "sequence") + " --output=" + (*folder_ / "run"));
     EXPECT_EQ(run.exit_code, 0) << run.errors;
   }
   static void TearDownTestSuite() { delete folder_; }

@@ -83,7 +83,7 @@ SurfaceProblem BrighterSurface::Problem(const Energy& energy) const {
 Energy EnergyWithUnknowns() {
   return ParseEnergy(
       "point_to_plane(loss=huber) "
-      "color(weight=2,exposure=1,loss=huber,scale=0.002) "
+      "color(weight=2,exposure=true,loss=huber,scale=0.002) "
       "depth_scale(weight=0.5,loss=cauchy) arap(weight=3)",
       TermsWithDepthScale());
 }
