@@ -38,10 +38,10 @@ struct ColorConstancy {
   /// `x`: warped point, camera frame, metres.
   template <typename T>
   bool operator()(const T* x, T* residual) const {
-    const T du = T(focal.x()) * x[0] / x[2] + T(offset.x());
-    const T dv = T(focal.y()) * x[1] / x[2] + T(offset.y());
-    residual[0] = T(metres * sqrt_confidence) *
-                  (T(difference) + T(gradient.x()) * du + T(gradient.y()) * dv);
+    const T du = focal.x() * x[0] / x[2] + offset.x();
+    const T dv = focal.y() * x[1] / x[2] + offset.y();
+    residual[0] = metres * sqrt_confidence *
+                  (difference + gradient.x() * du + gradient.y() * dv);
     return true;
   }
 };
@@ -65,8 +65,8 @@ struct ExposedColorConstancy {
   template <typename T>
   bool operator()(const T* x, const T* unknowns, T* residual) const {
     if (!color(x, residual)) return false;
-    residual[0] -= T(color.metres * color.sqrt_confidence) *
-                   ((unknowns[0] - T(1)) * T(model_intensity) + unknowns[1]);
+    residual[0] -= color.metres * color.sqrt_confidence *
+                   ((unknowns[0] - 1.0) * model_intensity + unknowns[1]);
     return true;
   }
 };

@@ -225,11 +225,9 @@ void BlockProblem::EvaluateChunk(const PointSet& set, int index, int begin,
     const int columns = kTwistSize * group.node_count;
     DifferentiateChunk(chunk, room->carried.data(), dims, room->by_point.data(),
                        rows);
-    AddGradient(values.residuals, rows, count, columns, gradient);
-    for (int u = 0; u < part.residuals->unknowns(); ++u) {
-      AddGradient(values.by_unknowns + count * u, rows, count, columns,
-                  gradient + columns * (1 + part.first_unknown + u));
-    }
+    AddGradients(1, values.residuals, rows, count, columns, gradient);
+    AddGradients(part.residuals->unknowns(), values.by_unknowns, rows, count,
+                 columns, gradient + columns * (1 + part.first_unknown));
     rows += count * columns;
   }
 }
@@ -311,7 +309,7 @@ void BlockProblem::EvaluateTuple(const TupleSet& set, int tuple,
   }
   double* gradient = &values_[block.offset];
   std::fill_n(gradient, columns, 0.0);
-  AddGradient(room->residuals.data(), rows, block.rows, columns, gradient);
+  AddGradients(1, room->residuals.data(), rows, block.rows, columns, gradient);
 }
 
 }  // namespace splitfusion

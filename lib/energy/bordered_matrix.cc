@@ -8,7 +8,8 @@ namespace {
 /// y += factor x
 void AddScaled(double factor, const std::vector<Vector6>& x,
                std::vector<Vector6>* y) {
-  for (std::size_t i = 0; i < x.size(); ++i) (*y)[i] += factor * x[i];
+  splitfusion::AddScaled(6 * static_cast<int>(x.size()), factor,
+                         x.data()->data(), y->data()->data());
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ void CornerSums::Add(int block, int rows, const double* residuals,
   for (int u = 0; u < unknowns_; ++u) {
     const double* own = derivatives + rows * u;
     gradient[u] += DotProduct(rows, own, residuals);
-    for (int v = 0; v < unknowns_; ++v) {
+    for (int v = 0; v <= u; ++v) {
       corner[unknowns_ * u + v] +=
           DotProduct(rows, own, derivatives + rows * v);
     }
@@ -34,8 +34,9 @@ void CornerSums::AddTo(int first, Eigen::MatrixXd* corner,
     gradient->segment(first, unknowns_) +=
         Eigen::Map<const Eigen::VectorXd>(&sums_[at], unknowns_);
     corner->block(first, first, unknowns_, unknowns_) +=
-        Eigen::Map<const RowMajor>(&sums_[at + unknowns_], unknowns_,
-                                   unknowns_);
+        Eigen::Map<const RowMajor>(&sums_[at + unknowns_], unknowns_, unknowns_)
+            .selfadjointView<Eigen::Lower>()
+            .toDenseMatrix();
   }
 }
 

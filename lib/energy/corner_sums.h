@@ -27,7 +27,7 @@ class CornerSums {
              Eigen::VectorXd* gradient) const;
 
  private:
-  /// Numbers of a block: U^T r, then U^T U.
+  /// Numbers of a block: U^T r, then U^T U, the lower triangle of it.
   int Stride() const { return unknowns_ * (unknowns_ + 1); }
 
   int unknowns_;

@@ -130,54 +130,45 @@ class PointResidualsWithUnknownsOf : public PointResiduals {
                 const double* unknowns, const PointValues& values,
                 double* cost) const override {
     const auto own = internal::ValuesOf<kUnknowns>(scales_, unknowns);
-    const auto jets = internal::JetsOf<kColumns, kUnknowns>(scales_, unknowns,
-                                                            /*first=*/3);
-    const bool differentiate = values.by_point != nullptr;
-    double joint[kDims * kColumns];
+    const auto jets = internal::JetsOf<kWidth, kUnknowns>(scales_, unknowns,
+                                                          /*first=*/3);
+    JointJet point[3] = {{0, 0}, {0, 1}, {0, 2}}, value[kDims];
+    double factor;
     for (int i = 0; i < count; ++i) {
       const PointFunctor& functor = functors_[first + i];
       const double* x = warped + 3 * i;
       double* r = values.residuals + kDims * i;
-      const bool defined =
-          differentiate ? Differentiate(functor, x, jets.data(), r, joint)
-                        : functor(x, own.data(), r);
-      if (!defined) return false;
-      *cost +=
-          scaling().Apply(kDims, kColumns, r, differentiate ? joint : nullptr);
-      if (differentiate) Split(joint, i, kDims * count, values);
+      if (values.by_point == nullptr) {
+        if (!functor(x, own.data(), r)) return false;
+        *cost += scaling().Apply(kDims, r, &factor);
+        continue;
+      }
+      for (int e = 0; e < 3; ++e) point[e].a = x[e];
+      if (!functor(point, jets.data(), value)) return false;
+      for (int d = 0; d < kDims; ++d) r[d] = value[d].a;
+      *cost += scaling().Apply(kDims, r, &factor);
+      for (int d = 0; d < kDims; ++d) {
+        Split(value[d], factor, kDims * i + d, kDims * count, values);
+      }
     }
     return true;
   }
 
  private:
-  /// Of the joint Jacobian: by the point, then by the unknowns.
-  static constexpr int kColumns = 3 + kUnknowns;  // Layout.
-  using JointJet = ceres::Jet<double, kColumns>;
+  /// Of Jets by the point, then by the unknowns. They are faster with an even
+  /// number, of which the last may stay zero.
+  static constexpr int kWidth = (3 + kUnknowns + 1) / 2 * 2;  // Layout.
+  using JointJet = ceres::Jet<double, kWidth>;
 
-  static bool Differentiate(const PointFunctor& functor, const double* x,
-                            const JointJet* unknowns, double* residual,
-                            double* joint) {
-    const JointJet point[3] = {{x[0], 0}, {x[1], 1}, {x[2], 2}};
-    JointJet value[kDims];
-    if (!functor(point, unknowns, value)) return false;
-    for (int d = 0; d < kDims; ++d) {
-      residual[d] = value[d].a;
-      for (int e = 0; e < kColumns; ++e)
-        joint[kColumns * d + e] = value[d].v[e];
-    }
-    return true;
-  }
-
-  /// Brings the joint Jacobian of a point where its parts go; `rows`: of all
-  /// points.
-  static void Split(const double* joint, int point, int rows,
+  /// Brings the derivatives of one residual, times `factor`, where they belong;
+  /// `rows`: of all points.
+  static void Split(const JointJet& value, double factor, int row, int rows,
                     const PointValues& values) {
-    for (int d = 0; d < kDims; ++d, joint += kColumns) {
-      const int row = kDims * point + d;
-      for (int e = 0; e < 3; ++e) values.by_point[3 * row + e] = joint[e];
-      for (int u = 0; u < kUnknowns; ++u) {
-        values.by_unknowns[rows * u + row] = joint[3 + u];
-      }
+    for (int e = 0; e < 3; ++e) {
+      values.by_point[3 * row + e] = factor * value.v[e];
+    }
+    for (int u = 0; u < kUnknowns; ++u) {
+      values.by_unknowns[rows * u + row] = factor * value.v[3 + u];
     }
   }
 
