@@ -57,9 +57,10 @@ struct ColorConstancy {
 struct ExposedColorConstancy {
   /// Residuals of one point.
   static constexpr int kResiduals = 1;  // Layout.
-  static constexpr int kUnknowns = 2;   // Layout: g, b.
-  ColorConstancy color;                 ///< With g = 1, b = 0.
-  double model_intensity = 0;           ///< I_m, 0..1.
+  /// g and b.
+  static constexpr int kUnknowns = 2;  // Layout.
+  ColorConstancy color;                ///< With g = 1, b = 0.
+  double model_intensity = 0;          ///< I_m, 0..1.
 
   /// `x`: warped point, camera frame, metres; `unknowns`: g, b.
   template <typename T>
@@ -77,8 +78,9 @@ struct ExposedColorConstancy {
 struct ExposurePrior {
   /// Residuals.
   static constexpr int kResiduals = 2;  // Layout.
-  static constexpr int kUnknowns = 2;   // Layout: g, b.
-  double metres = 0;                    ///< m.
+  /// g and b.
+  static constexpr int kUnknowns = 2;  // Layout.
+  double metres = 0;                   ///< m.
 
   /// `unknowns`: g, b.
   template <typename T>

@@ -14,8 +14,7 @@ namespace splitfusion {
 namespace {
 
 constexpr int kVersion = 2;                             // Format.
-constexpr int kOldestVersion = 1;                       // Format: without
-                                                        // unknowns.
+constexpr int kOldestVersion = 1;                       // Format.
 constexpr const char* kFormat = "splitfusion problem";  // Format.
 
 /// A directed edge of the graph.
