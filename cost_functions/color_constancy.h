@@ -72,15 +72,15 @@ struct ExposedColorConstancy {
   }
 };
 
-/// Prior of these, r = m [ g - 1, b ]: it weighs as much as one more point of
-/// confidence 1, and so decides only what the points leave open, as those of a
-/// surface of one colour, which do not tell g from b.
+/// Prior of these, r = sqrt(p) m [ g - 1, b ]: it weighs as much as p more
+/// points of confidence 1. With p = 1 it decides only what the points leave
+/// open, as those of a surface of one colour, which do not tell g from b.
 struct ExposurePrior {
   /// Residuals.
   static constexpr int kResiduals = 2;  // Layout.
   /// g and b.
   static constexpr int kUnknowns = 2;  // Layout.
-  double metres = 0;                   ///< m.
+  double metres = 0;                   ///< sqrt(p) m.
 
   /// `unknowns`: g, b.
   template <typename T>
@@ -100,6 +100,10 @@ class ColorConstancyTerm : public EnergyTerm {
     list->Switch("exposure", &exposure_,
                  "Gain and offset of the brightness are estimated with the "
                  "motion, of each surface and frame.");
+    list->Number("exposure_prior", &exposure_prior_, Range::AtLeast(0),
+                 "points",
+                 "Points of confidence 1 that hold the gain at 1 and the "
+                 "offset at 0.");
   }
 
   std::vector<Unknown> Unknowns() const override {
@@ -129,12 +133,14 @@ class ColorConstancyTerm : public EnergyTerm {
           return {color(c), c.model_intensity};
         },
         sink);
-    sink->AddUnknowns(std::vector<ExposurePrior>{{metres_}});
+    sink->AddUnknowns(
+        std::vector<ExposurePrior>{{metres_ * std::sqrt(exposure_prior_)}});
   }
 
  private:
   double metres_ = 0.05;
   bool exposure_ = false;
+  double exposure_prior_ = 1;
 };
 
 }  // namespace splitfusion

@@ -90,6 +90,13 @@ TEST(Exposure, ARoundBeginsWhereTheOneBeforeHasEnded) {
   EXPECT_NE(values[0], 1);
 }
 
+TEST(Exposure, APriorOfManyPointsHoldsIt) {
+  const Tracked tracked = TrackBrighter(
+      PlainModel(), "color(weight=8,exposure=true,exposure_prior=1e7)");
+  EXPECT_NEAR(tracked.rounds.back().solver.unknowns[0].final, 1, 0.01);
+  EXPECT_NEAR(tracked.rounds.back().solver.unknowns[1].final, 0, 0.01);
+}
+
 TEST(Exposure, IsNotEstimatedUnlessAskedFor) {
   const Tracked tracked = TrackBrighter(PlainModel(), "color(weight=8)");
   for (const TrackingRound& round : tracked.rounds) {
