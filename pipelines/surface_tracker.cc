@@ -85,6 +85,16 @@ double StartRadius(const std::vector<TrackingRound>& rounds,
                        : std::min(first, steps.back().trust_region_radius);
 }
 
+/// Values at which a round's solve begins to look for the terms' own unknowns:
+/// those of the round before, of whatever stage; none in the first round.
+std::vector<double> StartUnknowns(const std::vector<TrackingRound>& rounds) {
+  const auto last = std::find_if(
+      rounds.rbegin(), rounds.rend(),
+      [](const TrackingRound& round) { return round.solver.usable; });
+  if (last == rounds.rend()) return {};
+  return FinalUnknowns(last->solver);
+}
+
 /// Whether the last step raised the cost and was not taken: a shorter one may
 /// lower it.
 bool WasTooLong(const SolverReport& report) {
@@ -389,7 +399,8 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
          options_.keep_radius
              ? StartRadius(report->rounds, round.stage, initial_radius_)
              : initial_radius_,
-         &association.lost, &target.tracks, target.surface, context},
+         &association.lost, &target.tracks, target.surface, context,
+         StartUnknowns(report->rounds)},
         graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

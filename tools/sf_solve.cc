@@ -167,6 +167,11 @@ double Deviation(const FrozenProblem& problem) {
     largest = std::max(largest, own.cwiseAbs().maxCoeff());
     off = std::max(off, (start.gradient[i] - own).cwiseAbs().maxCoeff());
   }
+  for (std::size_t i = 0; i < start.by_unknowns.size(); ++i) {
+    const double own = problem.start.by_unknowns[i];
+    largest = std::max(largest, std::abs(own));
+    off = std::max(off, std::abs(start.by_unknowns[i] - own));
+  }
   const double cost = std::abs(start.cost - problem.start.cost);
   const double deviation =
       std::max(largest > 0 ? off / largest : off,

@@ -348,6 +348,10 @@ class Problem {
   }
 
   void AddColors(const Term& term) {
+    const auto exposure = term.keys.find("exposure");  // None in version 1.
+    if (exposure != term.keys.end() && exposure->second == "true") {
+      throw std::runtime_error("color(exposure=true): not in this example");
+    }
     const auto carried = ReadCarried(file_, "correspondences", graph_);
     const auto pixel = file_.Numbers("correspondences/pixel");
     const auto gradient = file_.Numbers("correspondences/intensity_gradient");

@@ -35,6 +35,8 @@ struct Correspondence {
   /// Live grey value there less that of the model, 0..1, after the common
   /// change of brightness was taken out; 0 if the model's is not known.
   float intensity_difference = 0;
+  /// Grey value of the model that it is the difference from, 0..1.
+  float model_intensity = 0;
   /// Derivative of the live grey value by column and row, 1 / pixel.
   Eigen::Vector2f intensity_gradient = Eigen::Vector2f::Zero();
 };

@@ -107,8 +107,8 @@ PointwiseAssociator::Outcome PointwiseAssociator::Match(
       out->intensity_gradient.dot(
           pixel.place -
           Eigen::Vector2f(static_cast<float>(u), static_cast<float>(v)));
-  out->intensity_difference =
-      live_intensity - sample.intensity[gates.color_level];
+  out->model_intensity = sample.intensity[gates.color_level];
+  out->intensity_difference = live_intensity - out->model_intensity;
   out->weight = live_.camera.noise.Confidence(out->target.z());
   return kAccepted;
 }

@@ -99,6 +99,34 @@ SPLITFUSION_INLINE void AddRowProducts(const double* a, const double* b,
   target = sums;
 }
 
+/// Of each of kSides vectors of factors, `count` numbers one after the other,
+/// adds the sum of factors_r rows_r to the six numbers at `out`, `apart` from
+/// one vector to the next. `stride`: from row to row.
+template <int kSides>
+SPLITFUSION_INLINE void AddScaledRows(const double* factors, const double* rows,
+                                      int count, int stride, double* out,
+                                      int apart) {
+  Vector4 sums4[kSides];
+  Vector2 sums2[kSides];
+  for (int s = 0; s < kSides; ++s) {
+    sums4[s] = SPLITFUSION_LOAD4(out + apart * s);
+    sums2[s] = *reinterpret_cast<const Vector2*>(out + apart * s + 4);
+  }
+  for (int r = 0; r < count; ++r, rows += stride) {
+    const Vector4 row4 = SPLITFUSION_LOAD4(rows);
+    const Vector2 row2 = *reinterpret_cast<const Vector2*>(rows + 4);
+    for (int s = 0; s < kSides; ++s) {
+      const double factor = factors[count * s + r];
+      sums4[s] += SPLITFUSION_FILL4(factor) * row4;
+      sums2[s] += (Vector2{factor, factor}) * row2;
+    }
+  }
+  for (int s = 0; s < kSides; ++s) {
+    *reinterpret_cast<Vector4*>(out + apart * s) = sums4[s];
+    *reinterpret_cast<Vector2*>(out + apart * s + 4) = sums2[s];
+  }
+}
+
 SPLITFUSION_INLINE const NineVectors& BlockAt(const double* blocks, int index) {
   return *reinterpret_cast<const NineVectors*>(blocks + kBlock * index);
 }
@@ -194,11 +222,24 @@ double StepAndResidual(int n, double alpha, const double* d, const double* q,
 }
 
 SPLITFUSION_VECTOR_CLONES
-void AddGradient(const double* residuals, const double* rows, int count,
-                 int columns, double* gradient) {
-  for (int r = 0; r < count; ++r, rows += columns) {
-    for (int c = 0; c < columns; ++c) gradient[c] += residuals[r] * rows[c];
+void AddGradients(int sides, const double* residuals, const double* rows,
+                  int count, int columns, double* gradients) {
+  int s = 0;
+  for (; s + 2 <= sides; s += 2) {
+    for (int c = 0; c < columns; c += 6) {
+      AddScaledRows<2>(residuals + count * s, rows + c, count, columns,
+                       gradients + columns * s + c, columns);
+    }
   }
+  for (int c = 0; s < sides && c < columns; c += 6) {
+    AddScaledRows<1>(residuals + count * s, rows + c, count, columns,
+                     gradients + columns * s + c, columns);
+  }
+}
+
+SPLITFUSION_VECTOR_CLONES
+void AddScaled(int n, double alpha, const double* x, double* y) {
+  for (int i = 0; i < n; ++i) y[i] += alpha * x[i];
 }
 
 SPLITFUSION_VECTOR_CLONES

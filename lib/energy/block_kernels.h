@@ -14,10 +14,11 @@ namespace splitfusion {
 void AddOuterProducts(const double* rows, int count, int nodes, int first,
                       const int* slots, double* blocks);
 
-/// gradient += J^T r: adds `count` rows of `columns` numbers, each times its
-/// residual.
-void AddGradient(const double* residuals, const double* rows, int count,
-                 int columns, double* gradient);
+/// gradient += J^T r: adds `count` rows of `columns` numbers, six or more times
+/// six, each times its residual. Of `sides` vectors r, one after the other; the
+/// gradients likewise.
+void AddGradients(int sides, const double* residuals, const double* rows,
+                  int count, int columns, double* gradients);
 
 /// y = A x for a symmetric A of `size` block rows, of which row i holds the
 /// blocks row_begin[i] .. row_begin[i + 1] of the upper triangle, the diagonal
@@ -31,6 +32,9 @@ double MultiplyDiagonal(int size, const double* blocks, const double* x,
 
 /// a . b of n numbers.
 double DotProduct(int n, const double* a, const double* b);
+
+/// y += alpha x of n numbers.
+void AddScaled(int n, double alpha, const double* x, double* y);
 
 /// x += alpha d and r -= alpha q; returns r . r. All of n numbers.
 double StepAndResidual(int n, double alpha, const double* d, const double* q,

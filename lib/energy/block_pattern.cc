@@ -8,14 +8,18 @@
 
 namespace splitfusion {
 
-void BlockPattern::Add(const int* nodes, int count, int rows, bool may_sum) {
+void BlockPattern::Add(const int* nodes, int count, int rows,
+                       const std::vector<int>& unknowns, bool may_sum) {
   Block block;
   block.first = static_cast<int>(nodes_.size());
   block.count = count;
   block.rows = rows;
+  block.unknowns = static_cast<int>(unknowns.size());
+  block.first_unknown = static_cast<int>(unknowns_.size());
   block.summed = may_sum && rows > 3 * (count + 1);
   block.offset = value_count_;
   nodes_.insert(nodes_.end(), nodes, nodes + count);
+  unknowns_.insert(unknowns_.end(), unknowns.begin(), unknowns.end());
   value_count_ = block.matrix_offset() + block.matrix_size();
   blocks_.push_back(block);
 }
@@ -78,9 +82,11 @@ SymmetricBlockMatrix BlockPattern::MakeMatrix() const {
 }
 
 void BlockPattern::Assemble(const double* values, SymmetricBlockMatrix* matrix,
-                            std::vector<Vector6>* gradient) const {
+                            std::vector<Vector6>* gradient,
+                            std::vector<std::vector<Vector6>>* border) const {
   const int size = matrix->size();
   gradient->assign(size, Vector6::Zero());
+  for (auto& column : *border) column.assign(size, Vector6::Zero());
   tbb::parallel_for(
       tbb::blocked_range<int>(0, size, 16),
       [&](const tbb::blocked_range<int>& range) {
@@ -92,9 +98,22 @@ void BlockPattern::Assemble(const double* values, SymmetricBlockMatrix* matrix,
             AddToRow(incidence, values, row);
             (*gradient)[i] += Eigen::Map<const Vector6>(
                 values + blocks_[incidence.block].offset + 6 * incidence.rank);
+            AddBorder(incidence, values, i, border);
           }
         }
       });
+}
+
+void BlockPattern::AddBorder(const Incidence& incidence, const double* values,
+                             int row,
+                             std::vector<std::vector<Vector6>>* border) const {
+  const Block& block = blocks_[incidence.block];
+  const double* column = values + block.offset + 6 * incidence.rank;
+  for (int u = 0; u < block.unknowns; ++u) {
+    column += 6 * block.count;
+    (*border)[unknowns_[block.first_unknown + u]][row] +=
+        Eigen::Map<const Vector6>(column);
+  }
 }
 
 void BlockPattern::AddToRow(const Incidence& incidence, const double* values,

@@ -12,27 +12,34 @@ namespace splitfusion {
 /// kept, and how they sum to the normal equations.
 class BlockPattern {
  public:
-  /// One block of residuals over n nodes. Its values, at `offset`: its gradient
-  /// (6n numbers), then its Jacobian by rows (rows x 6n), or, if `summed`, its
-  /// J_k^T J_l for all k <= l (36 numbers each, ascending by k, then l).
+  /// One block of residuals over n nodes and, where its terms have some, own
+  /// unknowns of these. Its values, at `offset`: its gradient (6n numbers), J^T
+  /// times the derivative by each such unknown (6n numbers each), then its
+  /// Jacobian J by rows (rows x 6n), or, if `summed`, its J_k^T J_l for all k
+  /// <= l (36 numbers each, ascending by k, then l).
   struct Block {
     int first = 0;           ///< Of its nodes.
     int count = 0;           ///< n
     int rows = 0;            ///< Scalar residuals.
+    int unknowns = 0;        ///< Number of own unknowns.
+    int first_unknown = 0;   ///< Of its list of these.
     bool summed = false;     ///< See above.
     std::size_t offset = 0;  ///< Of its values.
 
     /// Where the Jacobian or the sums begin.
-    std::size_t matrix_offset() const { return offset + 6 * count; }
+    std::size_t matrix_offset() const {
+      return offset + 6 * count * (1 + unknowns);
+    }
     /// Numbers that they take.
     std::size_t matrix_size() const {
       return summed ? 18 * count * (count + 1) : 6 * count * rows;
     }
   };
 
-  /// Adds a block. `nodes` are ascending; `may_sum`: it can be summed, and will
-  /// be where that takes less room.
-  void Add(const int* nodes, int count, int rows, bool may_sum);
+  /// Adds a block. `nodes` are ascending; `unknowns`: its columns in B;
+  /// `may_sum`: it can be summed, and will be where that takes less room.
+  void Add(const int* nodes, int count, int rows,
+           const std::vector<int>& unknowns, bool may_sum);
 
   /// To be called after the last Add(): the matrix over so many nodes.
   void Finish(int nodes);
@@ -47,10 +54,12 @@ class BlockPattern {
   /// Matrix with a 6x6 block wherever two nodes share a block; zero.
   SymmetricBlockMatrix MakeMatrix() const;
 
-  /// Sums the blocks' values to J^T J and J^T r, row by row in parallel and in
-  /// the order of the blocks. `matrix` is one of MakeMatrix().
+  /// Sums the blocks' values to J^T J, J^T r and B (by columns, as many as it
+  /// has), row by row in parallel and in the order of the blocks. `matrix` is
+  /// one of MakeMatrix().
   void Assemble(const double* values, SymmetricBlockMatrix* matrix,
-                std::vector<Vector6>* gradient) const;
+                std::vector<Vector6>* gradient,
+                std::vector<std::vector<Vector6>>* border) const;
 
  private:
   /// A block that a node has part in.
@@ -62,11 +71,14 @@ class BlockPattern {
 
   void CollectIncidences(int nodes);
   void CollectRow(int row, std::vector<int>* stamps);
+  void AddBorder(const Incidence& incidence, const double* values, int row,
+                 std::vector<std::vector<Vector6>>* border) const;
   void AddToRow(const Incidence& incidence, const double* values,
                 double* row) const;
 
   std::vector<Block> blocks_;
   std::vector<int> nodes_;
+  std::vector<int> unknowns_;  // Lists of the blocks.
   std::size_t value_count_ = 0;
   std::vector<int> incidence_begin_;  // By node.
   std::vector<Incidence> incidences_;

@@ -24,9 +24,10 @@ constexpr std::array<int, kMaxSkinningNodes> kInOrder = {0, 1, 2, 3,  // Layout.
 
 /// What the evaluation of a group needs besides its values.
 struct BlockProblem::GroupRoom {
-  explicit GroupRoom(int dims)
+  GroupRoom(int dims, int unknowns)
       : residuals(kWarpedChunk * dims),
         by_point(3 * kWarpedChunk * dims),
+        by_unknowns(kWarpedChunk * dims * unknowns),
         rows(new double[kWarpedChunk * dims * kTwistSize * kMaxSkinningNodes]) {
   }
   std::array<const TwistedNode*, kMaxSkinningNodes> nodes;
@@ -34,7 +35,8 @@ struct BlockProblem::GroupRoom {
   std::array<double, CarriedSize(kMaxSkinningNodes)> carried;
   std::vector<double> residuals;
   std::vector<double> by_point;
-  std::unique_ptr<double[]> rows;  // Of a group that is summed.
+  std::vector<double> by_unknowns;  // Of a part.
+  std::unique_ptr<double[]> rows;   // Of a group that is summed.
 };
 
 /// The same for a tuple.
@@ -47,6 +49,7 @@ struct BlockProblem::TupleRoom {
 BlockProblem::BlockProblem(const SurfaceProblem& problem,
                            const DeformationGraph& graph)
     : graph_(graph),
+      unknowns_(problem),
       terms_(CollectResiduals(problem, graph)),
       twisted_(graph.size()) {
   for (std::size_t t = 0; t < terms_.size(); ++t) {
@@ -65,10 +68,14 @@ void BlockProblem::AddPoints(int term, const TermResiduals& residuals) {
       point_sets_.begin(), point_sets_.end(),
       [&](const PointSet& s) { return s.points == residuals.points.get(); });
   if (set == point_sets_.end()) {
-    set = point_sets_.insert(set, {residuals.points.get(), {}, 0, 0});
+    set = point_sets_.insert(set, {residuals.points.get(), {}, 0, {}, 0});
   }
-  set->parts.push_back({term, residuals.of_points.get()});
+  set->parts.push_back({term, residuals.of_points.get(),
+                        static_cast<int>(set->unknowns.size())});
   set->dims += residuals.of_points->dims();
+  for (int u = 0; u < residuals.of_points->unknowns(); ++u) {
+    set->unknowns.push_back(unknowns_.first(term) + u);
+  }
 }
 
 void BlockProblem::MakeBlocks() {
@@ -77,7 +84,8 @@ void BlockProblem::MakeBlocks() {
     set.first_block = static_cast<int>(pattern_.blocks().size());
     for (const WarpedPoints::Group& group : set.points->groups()) {
       pattern_.Add(group.nodes, group.node_count,
-                   set.dims * (group.end - group.begin), /*may_sum=*/true);
+                   set.dims * (group.end - group.begin), set.unknowns,
+                   /*may_sum=*/true);
     }
     for (const PointPart& part : set.parts) {
       costs_[part.term].assign(set.points->groups().size(), 0.0);
@@ -90,25 +98,45 @@ void BlockProblem::MakeBlocks() {
       nodes = set.residuals->nodes(i);
       std::sort(nodes.begin(), nodes.end());
       pattern_.Add(nodes.data(), static_cast<int>(nodes.size()),
-                   set.residuals->dims(), /*may_sum=*/false);
+                   set.residuals->dims(), /*unknowns=*/{}, /*may_sum=*/false);
     }
     std::vector<double>& costs = costs_[set.term];
     set.first_cost = static_cast<int>(costs.size());
     costs.resize(costs.size() + set.residuals->size());
   }
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    if (terms_[t].residuals.of_unknowns != nullptr) costs_[t].push_back(0);
+    corners_.emplace_back(unknowns_.count(t),
+                          static_cast<int>(costs_[t].size()));
+  }
   pattern_.Finish(graph_.size());
   values_.reset(new double[pattern_.value_count()]);
 }
 
-bool BlockProblem::Evaluate(const std::vector<double>& twists,
+std::vector<double> BlockProblem::Start() const {
+  std::vector<double> sought(kTwistSize * graph_.size(), 0.0);
+  const std::vector<double> own = unknowns_.Start();
+  sought.insert(sought.end(), own.begin(), own.end());
+  return sought;
+}
+
+BorderedMatrix BlockProblem::MakeMatrix() const {
+  const int own = unknowns_.size();
+  return {pattern_.MakeMatrix(), std::vector<std::vector<Vector6>>(own),
+          Eigen::MatrixXd::Zero(own, own)};
+}
+
+bool BlockProblem::Evaluate(const std::vector<double>& sought,
                             bool with_jacobians) {
   for (int i = 0; i < graph_.size(); ++i) {
-    twisted_[i] = TwistNode(graph_, i, &twists[kTwistSize * i]);
+    twisted_[i] = TwistNode(graph_, i, &sought[kTwistSize * i]);
   }
+  own_.assign(sought.begin() + kTwistSize * graph_.size(), sought.end());
   for (const PointSet& set : point_sets_) EvaluatePoints(set, with_jacobians);
   for (const TupleSet& set : tuple_sets_) {
-    EvaluateTuples(set, twists, with_jacobians);
+    EvaluateTuples(set, sought, with_jacobians);
   }
+  for (std::size_t t = 0; t < terms_.size(); ++t) EvaluateUnknowns(t);
   return std::isfinite(Cost());
 }
 
@@ -125,16 +153,22 @@ std::vector<double> BlockProblem::TermCosts() const {
   return costs;
 }
 
-void BlockProblem::Assemble(SymmetricBlockMatrix* matrix,
-                            std::vector<Vector6>* gradient) const {
-  pattern_.Assemble(values_.get(), matrix, gradient);
+void BlockProblem::Assemble(BorderedMatrix* matrix,
+                            BorderedVector* gradient) const {
+  pattern_.Assemble(values_.get(), &matrix->nodes, &gradient->nodes,
+                    &matrix->border);
+  matrix->corner.setZero();
+  gradient->own.setZero(unknowns_.size());
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    corners_[t].AddTo(unknowns_.first(t), &matrix->corner, &gradient->own);
+  }
 }
 
 void BlockProblem::EvaluatePoints(const PointSet& set, bool with_jacobians) {
   const int groups = static_cast<int>(set.points->groups().size());
   tbb::parallel_for(tbb::blocked_range<int>(0, groups, kGrain / 4),
                     [&](const tbb::blocked_range<int>& range) {
-                      GroupRoom room(set.dims);
+                      GroupRoom room(set.dims, unknowns_.size());
                       for (int g = range.begin(); g < range.end(); ++g) {
                         EvaluateGroup(set, g, with_jacobians, &room);
                       }
@@ -154,6 +188,7 @@ void BlockProblem::EvaluateGroup(const PointSet& set, int index,
   if (with_jacobians) {
     std::fill(gradient, matrix, 0.0);
     if (block.summed) std::fill_n(matrix, block.matrix_size(), 0.0);
+    for (const PointPart& part : set.parts) corners_[part.term].Clear(index);
   }
   for (int begin = group.begin; begin < group.end; begin += kWarpedChunk) {
     const int end = std::min(begin + kWarpedChunk, group.end);
@@ -179,22 +214,56 @@ void BlockProblem::EvaluateChunk(const PointSet& set, int index, int begin,
   const PointChunk chunk =
       WarpedPoints::Chunk(group, begin, end, room->nodes.data());
   WarpChunk(chunk, room->warped.data(), room->carried.data());
+  const PointValues values{room->residuals.data(),
+                           rows == nullptr ? nullptr : room->by_point.data(),
+                           room->by_unknowns.data()};
   for (const PointPart& part : set.parts) {
-    double* cost = &costs_[part.term][index];
-    if (!part.residuals->Evaluate(
-            begin, end - begin, room->warped.data(), room->residuals.data(),
-            rows == nullptr ? nullptr : room->by_point.data(), cost)) {
-      *cost = std::nan("");
-    }
+    EvaluatePart(part, index, begin, end, values, room);
     if (rows == nullptr) continue;
     const int dims = part.residuals->dims();
     const int count = dims * (end - begin);
     const int columns = kTwistSize * group.node_count;
     DifferentiateChunk(chunk, room->carried.data(), dims, room->by_point.data(),
                        rows);
-    AddGradient(room->residuals.data(), rows, count, columns, gradient);
+    AddGradients(1, values.residuals, rows, count, columns, gradient);
+    AddGradients(part.residuals->unknowns(), values.by_unknowns, rows, count,
+                 columns, gradient + columns * (1 + part.first_unknown));
     rows += count * columns;
   }
+}
+
+void BlockProblem::EvaluatePart(const PointPart& part, int index, int begin,
+                                int end, const PointValues& values,
+                                GroupRoom* room) {
+  const PointResiduals& residuals = *part.residuals;
+  const int count = end - begin;
+  double* cost = &costs_[part.term][index];
+  if (!residuals.Evaluate(begin, count, room->warped.data(),
+                          own_.data() + unknowns_.first(part.term), values,
+                          cost)) {
+    *cost = std::nan("");
+  }
+  if (values.by_point == nullptr || residuals.unknowns() == 0) return;
+  corners_[part.term].Add(index, count * residuals.dims(), values.residuals,
+                          values.by_unknowns);
+}
+
+void BlockProblem::EvaluateUnknowns(std::size_t term) {
+  const auto& of_unknowns = terms_[term].residuals.of_unknowns;
+  if (of_unknowns == nullptr) return;
+  std::vector<double> residuals(of_unknowns->rows());
+  std::vector<double> derivatives(of_unknowns->rows() *
+                                  of_unknowns->unknowns());
+  double* cost = &costs_[term].back();
+  *cost = 0;
+  if (!of_unknowns->Evaluate(own_.data() + unknowns_.first(term),
+                             residuals.data(), derivatives.data(), cost)) {
+    *cost = std::nan("");
+  }
+  const int block = static_cast<int>(costs_[term].size()) - 1;
+  corners_[term].Clear(block);
+  corners_[term].Add(block, of_unknowns->rows(), residuals.data(),
+                     derivatives.data());
 }
 
 void BlockProblem::EvaluateTuples(const TupleSet& set,
@@ -240,7 +309,7 @@ void BlockProblem::EvaluateTuple(const TupleSet& set, int tuple,
   }
   double* gradient = &values_[block.offset];
   std::fill_n(gradient, columns, 0.0);
-  AddGradient(room->residuals.data(), rows, block.rows, columns, gradient);
+  AddGradients(1, room->residuals.data(), rows, block.rows, columns, gradient);
 }
 
 }  // namespace splitfusion

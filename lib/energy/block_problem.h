@@ -4,17 +4,20 @@
 #include <memory>
 #include <vector>
 
-#include "splitfusion/lib/energy/block_matrix.h"
 #include "splitfusion/lib/energy/block_pattern.h"
+#include "splitfusion/lib/energy/bordered_matrix.h"
+#include "splitfusion/lib/energy/corner_sums.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/energy/term_residuals.h"
+#include "splitfusion/lib/energy/term_unknowns.h"
 #include "splitfusion/lib/energy/warp_kernels.h"
 
 namespace splitfusion {
 
-/// The energy of one surface over the twists of its nodes, with its values and
-/// normal equations. Sums do not depend on the number of threads: every sum is
-/// taken by one thread in the order of the blocks.
+/// The energy of one surface over the twists of its nodes and the terms' own
+/// unknowns, with its values and normal equations. Sums do not depend on the
+/// number of threads: every sum is taken by one thread in the order of the
+/// blocks.
 ///
 /// A block is what shares its nodes: a group of warped points, with the
 /// residuals of all terms over these points, or one node tuple of one term.
@@ -26,9 +29,13 @@ class BlockProblem {
   BlockProblem(const BlockProblem&) = delete;             ///< Not copied.
   BlockProblem& operator=(const BlockProblem&) = delete;  ///< Not copied.
 
-  /// Evaluates all blocks at `twists` (kTwistSize a node); false if a value is
+  /// Where a minimisation begins: no twists, kTwistSize numbers a node, then
+  /// what is sought of the terms' own unknowns (TermUnknowns::Start()).
+  std::vector<double> Start() const;
+
+  /// Evaluates all blocks at `sought`, which is as Start(); false if a value is
   /// not finite.
-  bool Evaluate(const std::vector<double>& twists, bool with_jacobians);
+  bool Evaluate(const std::vector<double>& sought, bool with_jacobians);
 
   /// Cost as evaluated last.
   double Cost() const;
@@ -36,27 +43,30 @@ class BlockProblem {
   std::vector<double> TermCosts() const;
 
   /// Matrix with a block wherever two nodes share a residual block.
-  SymmetricBlockMatrix MakeMatrix() const { return pattern_.MakeMatrix(); }
+  BorderedMatrix MakeMatrix() const;
 
   /// Sums J^T J and the gradient J^T r of all blocks as evaluated last with
   /// Jacobians; `matrix` is one of MakeMatrix().
-  void Assemble(SymmetricBlockMatrix* matrix,
-                std::vector<Vector6>* gradient) const;
+  void Assemble(BorderedMatrix* matrix, BorderedVector* gradient) const;
 
   /// Terms of the energy.
   const std::vector<ProblemTerm>& terms() const { return terms_; }
+  /// Their own unknowns.
+  const TermUnknowns& unknowns() const { return unknowns_; }
 
  private:
   /// Residuals of one term over common points.
   struct PointPart {
     int term;
     const PointResiduals* residuals;
+    int first_unknown;  // Among those of the set.
   };
   /// Terms that share their points.
   struct PointSet {
     const WarpedPoints* points;
     std::vector<PointPart> parts;
-    int dims = 0;  // Residuals of a point, all parts.
+    int dims = 0;               // Residuals of a point, all parts.
+    std::vector<int> unknowns;  // Of all parts: columns of B.
     int first_block = 0;
   };
   /// Tuples of one term.
@@ -77,6 +87,11 @@ class BlockProblem {
   /// Points begin..end of a group. `rows`: room for their Jacobian, or null.
   void EvaluateChunk(const PointSet& set, int index, int begin, int end,
                      double* rows, double* gradient, GroupRoom* room);
+  /// The values of a part in the room; `index`: of the group.
+  void EvaluatePart(const PointPart& part, int index, int begin, int end,
+                    const PointValues& values, GroupRoom* room);
+  /// The residuals of a term's own unknowns alone.
+  void EvaluateUnknowns(std::size_t term);
   void EvaluateTuples(const TupleSet& set, const std::vector<double>& twists,
                       bool with_jacobians);
   void EvaluateTuple(const TupleSet& set, int tuple,
@@ -84,12 +99,15 @@ class BlockProblem {
                      TupleRoom* room);
 
   const DeformationGraph& graph_;
+  const TermUnknowns unknowns_;
   std::vector<ProblemTerm> terms_;
   std::vector<PointSet> point_sets_;
   std::vector<TupleSet> tuple_sets_;
   BlockPattern pattern_;
   std::vector<TwistedNode> twisted_;
+  std::vector<double> own_;                 // Own unknowns, as sought.
   std::vector<std::vector<double>> costs_;  // By term and block of the term.
+  std::vector<CornerSums> corners_;         // By term.
   std::unique_ptr<double[]> values_;        // See BlockPattern::Block.
 };
 

@@ -18,11 +18,15 @@ struct ResidualBlock {
   std::unique_ptr<ceres::CostFunction> cost;
   /// Nodes of the parameter blocks, in order.
   std::vector<int> nodes;
+  /// Whether one more parameter block follows: the term's own unknowns, in
+  /// units of their scales.
+  bool has_unknowns = false;
 };
 
 /// The residuals of a term as Ceres' cost functions: a block for every group of
-/// points with common nodes and one for every node tuple. They keep what they
-/// need of `residuals`; `graph` must outlive them and not change.
+/// points with common nodes, one for every node tuple and one for what depends
+/// on the term's own unknowns alone. They keep what they need of `residuals`;
+/// `graph` must outlive them and not change.
 ///
 /// Ceres applies a loss to a whole block, so the losses are applied within, as
 /// ResidualScaling says. With a loss, one more residual a block, sqrt(sum of

@@ -15,6 +15,7 @@
 #include "splitfusion/lib/energy/ceres_blocks.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/energy/term_residuals.h"
+#include "splitfusion/lib/energy/term_unknowns.h"
 
 namespace splitfusion {
 namespace {
@@ -25,24 +26,36 @@ std::string Upper(std::string text) {
   return text;
 }
 
-/// The Ceres problem of one minimisation; it owns the twists.
+/// The Ceres problem of one minimisation; it owns what is sought.
 class CeresProblem {
  public:
   CeresProblem(const SurfaceProblem& input, const DeformationGraph& graph)
-      : twists_(kTwistSize * graph.size(), 0.0), problem_(ProblemOptions()) {
+      : twists_(kTwistSize * graph.size(), 0.0),
+        unknowns_(input),
+        own_(unknowns_.Start()),
+        problem_(ProblemOptions()) {
     for (int i = 0; i < graph.size(); ++i) {
       problem_.AddParameterBlock(&twists_[kTwistSize * i], kTwistSize);
     }
     const std::vector<ProblemTerm> terms = CollectResiduals(input, graph);
     residual_count_ = CountResiduals(terms);
-    for (const ProblemTerm& term : terms) {
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      double* own = own_.data() + unknowns_.first(t);
+      if (unknowns_.count(t) > 0) {
+        problem_.AddParameterBlock(own, unknowns_.count(t));
+      }
       AddedTerm added;
-      added.cost = term.cost;
-      for (ResidualBlock& block : MakeCeresBlocks(graph, term.residuals)) {
-        added.ids.push_back(Add(std::move(block)));
+      added.cost = terms[t].cost;
+      for (ResidualBlock& block : MakeCeresBlocks(graph, terms[t].residuals)) {
+        added.ids.push_back(Add(std::move(block), own));
       }
       terms_.push_back(std::move(added));
     }
+  }
+
+  /// What became of the terms' own unknowns.
+  std::vector<UnknownEstimate> Unknowns() const {
+    return unknowns_.Estimates(own_.data());
   }
 
   /// Cost of every term at the current twists.
@@ -90,15 +103,19 @@ class CeresProblem {
     return options;
   }
 
-  ceres::ResidualBlockId Add(ResidualBlock block) {
+  /// `own`: the unknowns of its term.
+  ceres::ResidualBlockId Add(ResidualBlock block, double* own) {
     std::vector<double*> parameters;
     for (const int node : block.nodes) {
       parameters.push_back(&twists_[kTwistSize * node]);
     }
+    if (block.has_unknowns) parameters.push_back(own);
     return problem_.AddResidualBlock(block.cost.release(), nullptr, parameters);
   }
 
   std::vector<double> twists_;
+  TermUnknowns unknowns_;
+  std::vector<double> own_;  // As sought.
   ceres::Problem problem_;
   std::vector<AddedTerm> terms_;
   int residual_count_ = 0;
@@ -226,6 +243,7 @@ class CeresSolver : public Solver {
     // Ceres has -1 where it could not evaluate.
     if (!report.usable) report.initial_cost = initial_cost;
     report.terms = problem.Terms(initial, problem.TermCosts());
+    report.unknowns = problem.Unknowns();
     if (report.usable) ComposeTwists(problem.twists(), graph);
     report.total_seconds = stopwatch.Seconds();
     return report;

@@ -79,17 +79,18 @@ class ReorderedMatrix {
   ScalarMatrix values_;
 };
 
-/// |b - A x| / |b|
-double RelativeResidual(const SymmetricBlockMatrix& a,
-                        const std::vector<Vector6>& b,
-                        const std::vector<Vector6>& x) {
-  std::vector<Vector6> product(b.size());
-  a.Multiply(x, &product);
+/// |b - M x| / |b|
+double RelativeResidual(const BorderedMatrix& m, const BorderedVector& b,
+                        const BorderedVector& x) {
+  BorderedVector product;
+  Multiply(m, x, &product);
   double squared = 0, norm = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    squared += (b[i] - product[i]).squaredNorm();
-    norm += b[i].squaredNorm();
+  for (std::size_t i = 0; i < b.nodes.size(); ++i) {
+    squared += (b.nodes[i] - product.nodes[i]).squaredNorm();
+    norm += b.nodes[i].squaredNorm();
   }
+  squared += (b.own - product.own).squaredNorm();
+  norm += b.own.squaredNorm();
   return norm > 0 ? std::sqrt(squared / norm) : 0;
 }
 
@@ -102,29 +103,47 @@ class CholeskySolver : public LinearSolver {
     cholesky_.cholmod().print = 0;
   }
 
-  LinearSolution Solve(const SymmetricBlockMatrix& a,
-                       const std::vector<Vector6>& b,
-                       std::vector<Vector6>* x) override {
+  /// Of [A B; B^T C] A is factorised: with Z = A^-1 [B b_nodes] the own
+  /// unknowns solve (C - B^T Z_B) x_own = b_own - B^T z_b, and x_nodes are
+  /// z_b - Z_B x_own.
+  LinearSolution Solve(const BorderedMatrix& m, const BorderedVector& b,
+                       BorderedVector* x) override {
     const bool first = matrix_ == nullptr;
-    if (first) matrix_ = std::make_unique<ReorderedMatrix>(a);
-    const ScalarMatrix& values = matrix_->Fill(a);
+    if (first) matrix_ = std::make_unique<ReorderedMatrix>(m.nodes);
+    const ScalarMatrix& values = matrix_->Fill(m.nodes);
     if (first) cholesky_.analyzePattern(values);
-    x->assign(b.size(), Vector6::Zero());
+    x->nodes.assign(b.nodes.size(), Vector6::Zero());
+    x->own.setZero(b.own.size());
     cholesky_.factorize(values);
     if (cholesky_.info() != Eigen::Success) return {false, 1, 1};
+    const Eigen::Index own = b.own.size();
+    Eigen::MatrixXd right(6 * b.nodes.size(), own + 1);
+    for (Eigen::Index u = 0; u < own; ++u)
+      right.col(u) = Reordered(m.border[u]);
+    right.col(own) = Reordered(b.nodes);
+    const Eigen::MatrixXd z = cholesky_.solve(right);
+    const auto border = right.leftCols(own);
+    const Eigen::LLT<Eigen::MatrixXd> corner(m.corner - border.transpose() *
+                                                            z.leftCols(own));
+    if (corner.info() != Eigen::Success) return {false, 1, 1};
+    x->own = corner.solve(b.own - border.transpose() * z.col(own));
+    const Eigen::VectorXd solution = z.col(own) - z.leftCols(own) * x->own;
     const std::vector<int>& places = matrix_->places();
-    Eigen::VectorXd right(6 * b.size());
-    for (std::size_t i = 0; i < b.size(); ++i) {
-      right.segment<6>(6 * places[i]) = b[i];
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      x->nodes[i] = solution.segment<6>(6 * places[i]);
     }
-    const Eigen::VectorXd solution = cholesky_.solve(right);
-    for (std::size_t i = 0; i < b.size(); ++i) {
-      (*x)[i] = solution.segment<6>(6 * places[i]);
-    }
-    return {true, 1, RelativeResidual(a, b, *x)};
+    return {true, 1, RelativeResidual(m, b, *x)};
   }
 
  private:
+  Eigen::VectorXd Reordered(const std::vector<Vector6>& nodes) const {
+    Eigen::VectorXd reordered(6 * nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      reordered.segment<6>(6 * matrix_->places()[i]) = nodes[i];
+    }
+    return reordered;
+  }
+
   Eigen::CholmodSupernodalLLT<ScalarMatrix, Eigen::Lower> cholesky_;
   std::unique_ptr<ReorderedMatrix> matrix_;
 };

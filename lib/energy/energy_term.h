@@ -10,6 +10,7 @@
 #include "splitfusion/lib/energy/residual_sink.h"
 #include "splitfusion/lib/energy/term_context.h"
 #include "splitfusion/lib/energy/term_state.h"
+#include "splitfusion/lib/energy/unknown.h"
 #include "splitfusion/lib/geometry/camera.h"
 
 namespace splitfusion {
@@ -69,6 +70,14 @@ class EnergyTerm {
   /// the term in --terms and --set, beside weight, loss and scale. Called
   /// often: it lists, and changes nothing.
   virtual void List(OptionList* /*list*/) {}
+
+  /// What the term estimates beside the motions, at its parameters of now; most
+  /// terms nothing. Functors with kUnknowns see the values in this order. They
+  /// are estimated for each surface and frame: they begin at `initial`, and
+  /// every solve of the frame begins where the one before left them. One that
+  /// no residual depends on stays where it begins; a prior is a residual of the
+  /// term's own, see ResidualSink::AddUnknowns().
+  virtual std::vector<Unknown> Unknowns() const { return {}; }
 
   /// Adds the residuals of all its points, nodes or edges.
   virtual void AddResiduals(const EnergyInput& input,

@@ -8,11 +8,13 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/hdf5_file.h"
 #include "splitfusion/lib/energy/block_problem.h"
+#include "splitfusion/lib/energy/term_unknowns.h"
 
 namespace splitfusion {
 namespace {
 
-constexpr int kVersion = 1;                             // Format.
+constexpr int kVersion = 2;                             // Format.
+constexpr int kOldestVersion = 1;                       // Format.
 constexpr const char* kFormat = "splitfusion problem";  // Format.
 
 /// A directed edge of the graph.
@@ -104,6 +106,9 @@ void VisitPairs(File* file, const std::string& group,
   column(
       "intensity_gradient",
       [](C & c) -> auto& { return c.intensity_gradient; });
+  if (!file->Has(group + "/model_intensity", true)) return;  // Version 1.
+  column(
+      "model_intensity", [](C & c) -> auto& { return c.model_intensity; });
 }
 
 template <typename File>
@@ -174,6 +179,10 @@ void Visit(File* file, FrozenProblem* problem, std::vector<Edge>* edges) {
   VisitOptional(file, "before", &problem->before, motions);
   VisitOptional(file, "lost", &problem->lost, pairs);
   VisitOptional(file, "tracks", &problem->tracks, tracks);
+  if (file->Has("unknowns", !problem->unknowns.empty())) {
+    file->Column("unknowns/start", &problem->unknowns);
+    file->Column("unknowns/start_gradient", &problem->start.by_unknowns);
+  }
 }
 
 std::vector<Edge> EdgesOf(const DeformationGraph& graph) {
@@ -218,6 +227,11 @@ class Check {
       file_.Fail("terms/start_cost: expected one of each of " +
                  std::to_string(problem_.energy.size()) + " terms");
     }
+    const int declared = CountUnknowns();
+    if (static_cast<int>(problem_.unknowns.size()) != declared) {
+      file_.Fail("unknowns/start: expected one of each of " +
+                 std::to_string(declared) + " unknowns of the terms");
+    }
   }
 
   template <typename Item>
@@ -242,6 +256,11 @@ class Check {
   }
 
  private:
+  int CountUnknowns() const {
+    SurfaceProblem view = problem_.View();
+    view.unknowns.clear();
+    return TermUnknowns(view).size();
+  }
   bool IsNode(int node) const {
     return node >= 0 && node < problem_.graph.size();
   }
@@ -281,13 +300,15 @@ std::optional<T> CopyOf(const T* value) {
 ProblemStart EvaluateStart(const SurfaceProblem& problem,
                            const DeformationGraph& graph) {
   BlockProblem blocks(problem, graph);
-  blocks.Evaluate(std::vector<double>(kTwistSize * graph.size(), 0.0),
-                  /*with_jacobians=*/true);
+  blocks.Evaluate(blocks.Start(), /*with_jacobians=*/true);
   ProblemStart start;
   start.cost = blocks.Cost();
   start.terms = blocks.TermCosts();
-  SymmetricBlockMatrix matrix = blocks.MakeMatrix();
-  blocks.Assemble(&matrix, &start.gradient);
+  BorderedMatrix matrix = blocks.MakeMatrix();
+  BorderedVector gradient;
+  blocks.Assemble(&matrix, &gradient);
+  start.gradient = std::move(gradient.nodes);
+  start.by_unknowns.assign(gradient.own.begin(), gradient.own.end());
   return start;
 }
 
@@ -299,6 +320,7 @@ SurfaceProblem FrozenProblem::View() const {
   view.lost = AddressOf(lost);
   view.tracks = AddressOf(tracks);
   view.surface = surface;
+  view.unknowns = unknowns;
   return view;
 }
 
@@ -315,6 +337,7 @@ FrozenProblem CopyProblem(const SurfaceProblem& problem,
   frozen.lost = CopyOf(problem.lost);
   frozen.tracks = CopyOf(problem.tracks);
   frozen.before = CopyOf(problem.before);
+  frozen.unknowns = TermUnknowns(problem).StartValues();
   return frozen;
 }
 
@@ -348,9 +371,10 @@ FrozenProblem ReadFrozenProblem(const std::string& path,
   std::int32_t version = 0;
   file.Attribute("format", &format);
   file.Attribute("version", &version);
-  if (format != kFormat || version != kVersion) {
+  if (format != kFormat || version < kOldestVersion || version > kVersion) {
     file.Fail("is a '" + format + "' of version " + std::to_string(version) +
               ": expected a '" + kFormat + "' of version " +
+              std::to_string(kOldestVersion) + " or " +
               std::to_string(kVersion));
   }
   FrozenProblem problem;

@@ -15,6 +15,8 @@ struct ProblemStart {
   double cost = 0;                ///< Energy, Eq. 4.
   std::vector<double> terms;      ///< Of every term.
   std::vector<Vector6> gradient;  ///< By the twist of every node.
+  /// By the terms' own unknowns, each in units of its scale.
+  std::vector<double> by_unknowns;
 };
 
 /// Evaluates a problem at the graph's motions.
@@ -36,9 +38,10 @@ struct FrozenProblem {
   std::optional<std::vector<Correspondence>> lost;  ///< ... likewise ...
   std::optional<std::vector<TrackedPoint>> tracks;  ///< ... likewise ...
   std::optional<std::vector<NodeMotion>> before;    ///< ... likewise.
-  ProblemStart start;                               ///< As the run had it.
-  std::string solver;                               ///< The run's.
-  double final_cost = 0;                            ///< Where it ended.
+  std::vector<double> unknowns;  ///< Values at which all of them begin.
+  ProblemStart start;            ///< As the run had it.
+  std::string solver;            ///< The run's.
+  double final_cost = 0;         ///< Where it ended.
 
   /// The problem itself; holds as long as this. Without a live frame.
   SurfaceProblem View() const;

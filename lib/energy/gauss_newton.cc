@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "splitfusion/lib/base/stopwatch.h"
-#include "splitfusion/lib/energy/block_matrix.h"
 #include "splitfusion/lib/energy/block_problem.h"
+#include "splitfusion/lib/energy/bordered_matrix.h"
 #include "splitfusion/lib/energy/linear_solver.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/energy/term_residuals.h"
@@ -21,26 +21,41 @@ namespace {
 constexpr double kMinDiagonal = 1e-6;  // Maths.
 constexpr double kMaxDiagonal = 1e32;
 
-double MaxNorm(const std::vector<Vector6>& values) {
+double MaxNorm(const BorderedVector& values) {
   double norm = 0;
-  for (const Vector6& v : values)
+  for (const Vector6& v : values.nodes)
     norm = std::max(norm, v.cwiseAbs().maxCoeff());
+  for (const double v : values.own) norm = std::max(norm, std::abs(v));
   return norm;
 }
 
-double Norm(const std::vector<Vector6>& values) {
+double Norm(const BorderedVector& values) {
   double sum = 0;
-  for (const Vector6& v : values) sum += v.squaredNorm();
-  return std::sqrt(sum);
+  for (const Vector6& v : values.nodes) sum += v.squaredNorm();
+  return std::sqrt(sum + values.own.squaredNorm());
 }
 
-std::vector<double> Moved(const std::vector<double>& twists,
-                          const std::vector<Vector6>& step) {
-  std::vector<double> moved = twists;
-  for (std::size_t i = 0; i < step.size(); ++i) {
-    for (int d = 0; d < 6; ++d) moved[kTwistSize * i + d] += step[i][d];
+BorderedVector Negative(BorderedVector values) {
+  for (Vector6& v : values.nodes) v = -v;
+  values.own = -values.own;
+  return values;
+}
+
+std::vector<double> Moved(const std::vector<double>& sought,
+                          const BorderedVector& step) {
+  std::vector<double> moved = sought;
+  std::size_t at = 0;
+  for (const Vector6& v : step.nodes) {
+    for (int d = 0; d < 6; ++d) moved[at++] += v[d];
   }
+  for (const double v : step.own) moved[at++] += v;
   return moved;
+}
+
+/// What damping adds to these entries of a diagonal, as in Ceres.
+template <typename Vector>
+Vector Damping(const Vector& diagonal, double radius) {
+  return diagonal.cwiseMax(kMinDiagonal).cwiseMin(kMaxDiagonal) / radius;
 }
 
 /// All there is to say of a solve, as Ceres' FullReport().
@@ -61,6 +76,11 @@ std::string FullText(const SolverReport& report, const std::string& solver,
          << ", " << term.final << " (" << term.residual_vectors
          << " residual vectors)\n";
   }
+  for (const UnknownEstimate& unknown : report.unknowns) {
+    text << "  " << unknown.term << '.' << unknown.name << "  "
+         << unknown.initial << ", " << unknown.final << ' ' << unknown.unit
+         << '\n';
+  }
   text << "  " << std::setw(18) << "sum" << report.initial_cost << ", "
        << report.final_cost
        << "\n\niteration  cost  change  |gradient|  |step|  radius  "
@@ -79,7 +99,7 @@ std::string FullText(const SolverReport& report, const std::string& solver,
   return text.str();
 }
 
-/// A minimisation under way, about the twists reached so far.
+/// A minimisation under way, about what was reached so far.
 class Minimization {
  public:
   /// Evaluates the start; Usable() says whether its cost is finite.
@@ -90,12 +110,12 @@ class Minimization {
         matrix_(problem_.MakeMatrix()),
         linear_solver_(linear(options)),
         diagonal_(graph.size()),
-        twists_(kTwistSize * graph.size(), 0.0),
+        sought_(problem_.Start()),
         radius_(input.initial_radius > 0 ? input.initial_radius
                                          : options.initial_radius) {
     const bool finite = EvaluateJacobians();
     report_.usable = finite;
-    report_.parameters = static_cast<int>(twists_.size());
+    report_.parameters = static_cast<int>(sought_.size());
     report_.residuals = CountResiduals(problem_.terms());
     report_.initial_cost = report_.final_cost = problem_.Cost();
     report_.termination = finite ? "NO_CONVERGENCE" : "FAILURE";
@@ -134,17 +154,20 @@ class Minimization {
       report.terms.back().initial = initial_costs_[i];
       report.terms.back().final = final_costs_[i];
     }
+    report.unknowns = problem_.unknowns().Estimates(
+        sought_.data() + kTwistSize * matrix_.nodes.size());
     return report;
   }
 
   bool Usable() const { return report_.usable; }
-  const SymmetricBlockMatrix& matrix() const { return matrix_; }
-  const std::vector<double>& twists() const { return twists_; }
+  const SymmetricBlockMatrix& matrix() const { return matrix_.nodes; }
+  /// Twists, and what follows them.
+  const std::vector<double>& sought() const { return sought_; }
 
  private:
   bool EvaluateJacobians() {
     const Stopwatch watch;
-    const bool finite = problem_.Evaluate(twists_, /*with_jacobians=*/true);
+    const bool finite = problem_.Evaluate(sought_, /*with_jacobians=*/true);
     report_.jacobian_seconds += watch.Seconds();
     return finite;
   }
@@ -154,8 +177,8 @@ class Minimization {
     report_.message = message;
   }
 
-  /// Normal equations at the twists reached, and, in the iteration that reached
-  /// them, the gradient there.
+  /// Normal equations at what was reached, and, in the iteration that reached
+  /// it, the gradient there.
   void LinearizeHere() {
     if (linearized_) return;
     SolverIteration& reached = report_.iterations.back();
@@ -163,9 +186,10 @@ class Minimization {
     if (reached.iteration > 0) EvaluateJacobians();
     const Stopwatch assembly;
     problem_.Assemble(&matrix_, &gradient_);
-    for (int i = 0; i < matrix_.size(); ++i) {
-      diagonal_[i] = matrix_.Diagonal(i).diagonal();
+    for (int i = 0; i < matrix_.nodes.size(); ++i) {
+      diagonal_[i] = matrix_.nodes.Diagonal(i).diagonal();
     }
+    own_diagonal_ = matrix_.corner.diagonal();
     linearized_ = true;
     report_.linear_solver_seconds += assembly.Seconds();
     reached.gradient_max_norm = MaxNorm(gradient_);
@@ -174,19 +198,17 @@ class Minimization {
 
   /// Adds diag(J^T J) / radius, Ceres' Levenberg-Marquardt damping.
   void Damp() {
-    for (int i = 0; i < matrix_.size(); ++i) {
-      matrix_.Diagonal(i).diagonal() =
-          diagonal_[i] +
-          diagonal_[i].cwiseMax(kMinDiagonal).cwiseMin(kMaxDiagonal) / radius_;
+    for (int i = 0; i < matrix_.nodes.size(); ++i) {
+      matrix_.nodes.Diagonal(i).diagonal() =
+          diagonal_[i] + Damping(diagonal_[i], radius_);
     }
+    matrix_.corner.diagonal() = own_diagonal_ + Damping(own_diagonal_, radius_);
   }
 
   /// Solves (J^T J + D / radius) x = -J^T r.
   LinearSolution SolveStep() {
     Damp();
-    std::vector<Vector6> right = gradient_;
-    for (Vector6& v : right) v = -v;
-    return linear_solver_->Solve(matrix_, right, &step_);
+    return linear_solver_->Solve(matrix_, Negative(gradient_), &step_);
   }
 
   /// Iteration 0, the start, as Ceres reports it.
@@ -220,7 +242,7 @@ class Minimization {
 
   /// Takes the step if it does not raise the cost, and adapts the radius.
   void TryStep(bool usable, SolverIteration* iteration) {
-    std::vector<double> moved = Moved(twists_, step_);
+    std::vector<double> moved = Moved(sought_, step_);
     const bool finite =
         usable && problem_.Evaluate(moved, /*with_jacobians=*/false);
     const double cost = problem_.Cost();
@@ -232,7 +254,7 @@ class Minimization {
       iteration->gradient_max_norm = MaxNorm(gradient_);
       return;
     }
-    twists_ = std::move(moved);
+    sought_ = std::move(moved);
     report_.final_cost = cost;
     final_costs_ = problem_.TermCosts();
     radius_ *= 3;
@@ -248,15 +270,16 @@ class Minimization {
 
   const SolverOptions& options_;
   BlockProblem problem_;
-  SymmetricBlockMatrix matrix_;
+  BorderedMatrix matrix_;
   std::unique_ptr<LinearSolver> linear_solver_;
   std::vector<Vector6> diagonal_;  // Of J^T J, without damping.
-  std::vector<double> twists_;
+  Eigen::VectorXd own_diagonal_;   // Likewise, of the terms' own unknowns.
+  std::vector<double> sought_;     // As BlockProblem::Start().
   double radius_;
   bool solved_ = false;      // Whether the last step is that of its system.
-  bool linearized_ = false;  // Whether matrix_ and gradient_ are at twists_.
-  std::vector<Vector6> gradient_;
-  std::vector<Vector6> step_;
+  bool linearized_ = false;  // Whether matrix_ and gradient_ are at sought_.
+  BorderedVector gradient_;
+  BorderedVector step_;
   std::vector<double> initial_costs_;  // By term.
   std::vector<double> final_costs_;    // By term.
   SolverReport report_;
@@ -273,7 +296,7 @@ class GaussNewton : public Solver {
     Minimization minimization(problem, options_, linear_, *graph);
     minimization.Run();
     SolverReport report = minimization.Report();
-    if (minimization.Usable()) ComposeTwists(minimization.twists(), graph);
+    if (minimization.Usable()) ComposeTwists(minimization.sought(), graph);
     report.total_seconds = total.Seconds();
     if (options_.full_report) {
       report.full_report =

@@ -10,13 +10,15 @@ class PcgSolver : public LinearSolver {
  public:
   explicit PcgSolver(const SolverOptions& options) : options_(options) {}
 
-  LinearSolution Solve(const SymmetricBlockMatrix& a,
-                       const std::vector<Vector6>& b,
-                       std::vector<Vector6>* x) override {
-    const CgResult result =
-        SolveByPcg(a, MakePreconditioner(options_.preconditioner, a), b,
-                   options_.eta, options_.max_linear_solver_iterations, x);
-    return {true, result.iterations, result.relative_residual};
+  LinearSolution Solve(const BorderedMatrix& m, const BorderedVector& b,
+                       BorderedVector* x) override {
+    const ReducedMatrix reduced(m);
+    const CgResult result = SolveByPcg(
+        reduced, MakePreconditioner(options_.preconditioner, reduced),
+        reduced.RightSide(b), options_.eta,
+        options_.max_linear_solver_iterations, &x->nodes);
+    x->own = reduced.Own(b.own, x->nodes);
+    return {reduced.usable(), result.iterations, result.relative_residual};
   }
 
  private:

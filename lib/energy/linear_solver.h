@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "splitfusion/lib/energy/block_matrix.h"
+#include "splitfusion/lib/energy/bordered_matrix.h"
 #include "splitfusion/lib/energy/solver.h"
 
 namespace splitfusion {
@@ -14,7 +14,9 @@ struct LinearSolution {
   bool usable = true;  ///< False if the matrix could not be factorised.
   /// Of conjugate gradients; 1 for a factorisation.
   int iterations = 0;
-  double relative_residual = 0;  ///< |b - A x| / |b|
+  /// |b - M x| / |b|; of conjugate gradients that of the system that is left
+  /// for the twists, see ReducedMatrix.
+  double relative_residual = 0;
 };
 
 /// Solves the linear systems of one minimisation, all of one pattern.
@@ -22,21 +24,22 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  /// Solves A x = b.
-  virtual LinearSolution Solve(const SymmetricBlockMatrix& a,
-                               const std::vector<Vector6>& b,
-                               std::vector<Vector6>* x) = 0;
+  /// Solves M x = b.
+  virtual LinearSolution Solve(const BorderedMatrix& m, const BorderedVector& b,
+                               BorderedVector* x) = 0;
 };
 
 /// Makes the linear solver of one minimisation; the options must outlive it.
 using LinearSolverFactory =
     std::unique_ptr<LinearSolver> (*)(const SolverOptions& options);
 
-/// Conjugate gradients, preconditioned as the options say.
+/// Conjugate gradients on what is left for the twists, preconditioned as the
+/// options say.
 std::unique_ptr<LinearSolver> MakePcgSolver(const SolverOptions& options);
 
-/// Supernodal Cholesky factorisation by CHOLMOD. Nodes are ordered once, for
-/// the pattern of the first matrix; later ones must have the same.
+/// Supernodal Cholesky factorisation by CHOLMOD: of the nodes' part, once, and
+/// of the Schur complement of the terms' own unknowns. Nodes are ordered once,
+/// for the pattern of the first matrix; later ones must have the same.
 std::unique_ptr<LinearSolver> MakeCholeskySolver();
 
 /// Levenberg-Marquardt on assembled 6x6 blocks of J^T J, whose systems `linear`

@@ -94,14 +94,13 @@ NodeCovariance::NodeCovariance(const SurfaceProblem& problem,
                                const std::vector<Skinning>& points)
     : graph_(graph) {
   BlockProblem blocks(problem, graph);
-  const std::vector<double> here(kTwistSize * graph.size(), 0.0);
-  blocks.Evaluate(here, /*with_jacobians=*/true);
-  SymmetricBlockMatrix matrix = blocks.MakeMatrix();
-  std::vector<Vector6> gradient;
+  blocks.Evaluate(blocks.Start(), /*with_jacobians=*/true);
+  BorderedMatrix matrix = blocks.MakeMatrix();
+  BorderedVector gradient;
   blocks.Assemble(&matrix, &gradient);
   unit_variance_ = UnitVariance(blocks, kTwistSize * graph.size());
   held_by_prior_ = NodesWithoutPoints(blocks.terms(), graph.size());
-  inverse_.emplace(Information(matrix, unit_variance_, PairsOf(points)),
+  inverse_.emplace(Information(matrix.nodes, unit_variance_, PairsOf(points)),
                    kLeastInformation);
 }
 

@@ -33,6 +33,9 @@ namespace splitfusion {
 /// - One solve, one frame: what has slid along the surface since it was first
 ///   seen is no part of it.
 ///
+/// - Unknowns of the terms' own are known at their estimates: they are few, and
+///   all residuals of their term hold them.
+///
 /// A direction that is known to no better than 1 m or 1 rad counts as known to
 /// that: a part that nothing holds makes nothing singular.
 class NodeCovariance {

@@ -9,11 +9,6 @@
 namespace splitfusion {
 namespace {
 
-double Dot(const std::vector<Vector6>& a, const std::vector<Vector6>& b) {
-  return DotProduct(6 * static_cast<int>(a.size()), a.data()->data(),
-                    b.data()->data());
-}
-
 /// out = M^-1 in; returns in . out.
 double Apply(const Blocks6& preconditioner, const std::vector<Vector6>& in,
              std::vector<Vector6>* out) {
@@ -25,7 +20,7 @@ double Apply(const Blocks6& preconditioner, const std::vector<Vector6>& in,
 }  // namespace
 
 Blocks6 MakePreconditioner(const std::string& name,
-                           const SymmetricBlockMatrix& matrix) {
+                           const ReducedMatrix& matrix) {
   CheckOption(name == "auto" || name == "jacobi" || name == "identity",
               "preconditioner", name, "auto, jacobi or identity");
   Blocks6 inverses(matrix.size(), Block6::Identity());
@@ -38,8 +33,7 @@ Blocks6 MakePreconditioner(const std::string& name,
   return inverses;
 }
 
-CgResult SolveByPcg(const SymmetricBlockMatrix& a,
-                    const Blocks6& preconditioner,
+CgResult SolveByPcg(const ReducedMatrix& a, const Blocks6& preconditioner,
                     const std::vector<Vector6>& b, double tolerance,
                     int max_iterations, std::vector<Vector6>* x) {
   const int n = 6 * static_cast<int>(b.size());

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/energy/block_matrix.h"
+#include "splitfusion/lib/energy/bordered_matrix.h"
 
 namespace splitfusion {
 
@@ -20,13 +20,12 @@ struct CgResult {
 ///
 /// @throw InputError on an unknown name; lists the known ones.
 Blocks6 MakePreconditioner(const std::string& name,
-                           const SymmetricBlockMatrix& matrix);
+                           const ReducedMatrix& matrix);
 
 /// Solves A x = b by conjugate gradients, preconditioned by diagonal blocks,
 /// from x = 0 until the relative residual is below `tolerance` or
 /// `max_iterations` are done.
-CgResult SolveByPcg(const SymmetricBlockMatrix& a,
-                    const Blocks6& preconditioner,
+CgResult SolveByPcg(const ReducedMatrix& a, const Blocks6& preconditioner,
                     const std::vector<Vector6>& b, double tolerance,
                     int max_iterations, std::vector<Vector6>* x);
 

@@ -7,10 +7,23 @@
 #include <vector>
 
 #include "splitfusion/lib/energy/residual_scaling.h"
+#include "splitfusion/lib/energy/unknown.h"
 
 namespace splitfusion {
 
-/// The residuals of one term as functions of warped points.
+/// Where the values of points go, with room for dims() * count numbers a
+/// column.
+struct PointValues {
+  double* residuals = nullptr;  ///< dims() a point.
+  /// Derivatives by the warped point, 3 dims() a point; null: none are wanted.
+  double* by_point = nullptr;
+  /// Derivatives by the term's own unknowns, if it has any and `by_point` is
+  /// not null: a column of dims() * count numbers each.
+  double* by_unknowns = nullptr;
+};
+
+/// The residuals of one term as functions of warped points, and of the term's
+/// own unknowns.
 class PointResiduals {
  public:
   /// All share one scaling.
@@ -20,14 +33,16 @@ class PointResiduals {
 
   /// Residuals of one point.
   virtual int dims() const = 0;
+  /// Number of unknowns of the term's own that they depend on.
+  virtual int unknowns() const { return 0; }
 
   /// Evaluates `count` points from `first` on, in the order of WarpedPoints;
-  /// `warped` are their warped positions (three a point, metres). Residuals and
-  /// derivatives by the warped point (dims() and 3 dims() a point; `by_point`
-  /// may be null) are scaled, see ResidualScaling; the cost is added to `cost`.
-  /// False if a functor refuses.
+  /// `warped` are their warped positions (three a point, metres), `unknowns`
+  /// the term's own in units of their scales. Residuals and derivatives are
+  /// scaled, see ResidualScaling; the cost is added to `cost`. False if a
+  /// functor refuses.
   virtual bool Evaluate(int first, int count, const double* warped,
-                        double* residuals, double* by_point,
+                        const double* unknowns, const PointValues& values,
                         double* cost) const = 0;
 
   /// Units, loss and weight.
@@ -53,14 +68,16 @@ class PointResidualsOf : public PointResiduals {
 
   int dims() const override { return kDims; }
 
-  bool Evaluate(int first, int count, const double* warped, double* residuals,
-                double* by_point, double* cost) const override {
+  bool Evaluate(int first, int count, const double* warped,
+                const double* /*unknowns*/, const PointValues& values,
+                double* cost) const override {
     for (int i = 0; i < count; ++i) {
       const PointFunctor& functor = functors_[first + i];
       const double* x = warped + 3 * i;
-      double* r = residuals + kDims * i;
-      double* derivative =
-          by_point == nullptr ? nullptr : by_point + 3 * kDims * i;
+      double* r = values.residuals + kDims * i;
+      double* derivative = values.by_point == nullptr
+                               ? nullptr
+                               : values.by_point + 3 * kDims * i;
       const bool defined = derivative == nullptr
                                ? functor(x, r)
                                : Differentiate(functor, x, r, derivative);
@@ -85,6 +102,78 @@ class PointResidualsOf : public PointResiduals {
   }
 
   std::vector<PointFunctor> functors_;
+};
+
+/// The same of a functor with unknowns: kResiduals, kUnknowns, and
+/// operator()(const T* warped_point, const T* unknowns, T* residual).
+template <typename PointFunctor>
+class PointResidualsWithUnknownsOf : public PointResiduals {
+ public:
+  /// Residuals of one point.
+  static constexpr int kDims = PointFunctor::kResiduals;
+  /// Unknowns of the term.
+  static constexpr int kUnknowns = PointFunctor::kUnknowns;
+
+  /// `functors[i]` belongs to point i of WarpedPoints; `scales`: of the
+  /// unknowns.
+  PointResidualsWithUnknownsOf(std::vector<PointFunctor> functors,
+                               std::vector<double> scales,
+                               ResidualScaling scaling)
+      : PointResiduals(std::move(scaling)),
+        functors_(std::move(functors)),
+        scales_(std::move(scales)) {}
+
+  int dims() const override { return kDims; }
+  int unknowns() const override { return kUnknowns; }
+
+  bool Evaluate(int first, int count, const double* warped,
+                const double* unknowns, const PointValues& values,
+                double* cost) const override {
+    const auto own = internal::ValuesOf<kUnknowns>(scales_, unknowns);
+    const auto jets = internal::JetsOf<kWidth, kUnknowns>(scales_, unknowns,
+                                                          /*first=*/3);
+    JointJet point[3] = {{0, 0}, {0, 1}, {0, 2}}, value[kDims];
+    double factor;
+    for (int i = 0; i < count; ++i) {
+      const PointFunctor& functor = functors_[first + i];
+      const double* x = warped + 3 * i;
+      double* r = values.residuals + kDims * i;
+      if (values.by_point == nullptr) {
+        if (!functor(x, own.data(), r)) return false;
+        *cost += scaling().Apply(kDims, r, &factor);
+        continue;
+      }
+      for (int e = 0; e < 3; ++e) point[e].a = x[e];
+      if (!functor(point, jets.data(), value)) return false;
+      for (int d = 0; d < kDims; ++d) r[d] = value[d].a;
+      *cost += scaling().Apply(kDims, r, &factor);
+      for (int d = 0; d < kDims; ++d) {
+        Split(value[d], factor, kDims * i + d, kDims * count, values);
+      }
+    }
+    return true;
+  }
+
+ private:
+  /// Of Jets by the point, then by the unknowns. They are faster with an even
+  /// number, of which the last may stay zero.
+  static constexpr int kWidth = (3 + kUnknowns + 1) / 2 * 2;  // Layout.
+  using JointJet = ceres::Jet<double, kWidth>;
+
+  /// Brings the derivatives of one residual, times `factor`, where they belong;
+  /// `rows`: of all points.
+  static void Split(const JointJet& value, double factor, int row, int rows,
+                    const PointValues& values) {
+    for (int e = 0; e < 3; ++e) {
+      values.by_point[3 * row + e] = factor * value.v[e];
+    }
+    for (int u = 0; u < kUnknowns; ++u) {
+      values.by_unknowns[rows * u + row] = factor * value.v[3 + u];
+    }
+  }
+
+  std::vector<PointFunctor> functors_;
+  std::vector<double> scales_;
 };
 
 }  // namespace splitfusion

@@ -21,6 +21,16 @@ struct ResidualScaling {
   /// a number if s is none, where some losses are constant.
   double Apply(int rows, int columns, double* residuals,
                double* jacobian) const {
+    double factor;
+    const double cost = Apply(rows, residuals, &factor);
+    const int entries = jacobian == nullptr ? 0 : rows * columns;
+    for (int e = 0; e < entries; ++e) jacobian[e] *= factor;
+    return cost;
+  }
+
+  /// The same of the residuals alone; `factor`: what their Jacobian is to be
+  /// multiplied with.
+  double Apply(int rows, double* residuals, double* factor) const {
     double squared = 0;
     for (int d = 0; d < rows; ++d) {
       residuals[d] *= residual_scale;
@@ -30,8 +40,7 @@ struct ResidualScaling {
     if (loss != nullptr) loss->Evaluate(squared, rho);
     const double root = weight_root * std::sqrt(rho[1]);
     for (int d = 0; d < rows; ++d) residuals[d] *= root;
-    const int entries = jacobian == nullptr ? 0 : rows * columns;
-    for (int e = 0; e < entries; ++e) jacobian[e] *= root * residual_scale;
+    *factor = root * residual_scale;
     if (!std::isfinite(squared)) return std::nan("");
     return 0.5 * weight_root * weight_root * rho[0];
   }

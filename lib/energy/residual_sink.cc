@@ -37,10 +37,21 @@ const std::vector<int>& ResidualSink::SetPoints(
   return residuals_.points->source();
 }
 
-ResidualScaling ResidualSink::Scaling() const {
+void ResidualSink::CheckUnknowns(int count) const {
+  CheckOption(count == static_cast<int>(scales_.size()),
+              "unknowns of a functor of term '" + options_.name + "'", count,
+              std::to_string(scales_.size()) + ", as the term declares");
+}
+
+ResidualScaling ResidualSink::Units(double total) const {
   ResidualScaling scaling;
   scaling.residual_scale = 1 / kResidualUnit;
-  scaling.weight_root = std::sqrt(2 * options_.weight / total_);
+  scaling.weight_root = std::sqrt(2 * options_.weight / total);
+  return scaling;
+}
+
+ResidualScaling ResidualSink::Scaling() const {
+  ResidualScaling scaling = Units(total_);
   if (options_.loss != LossKind::kTrivial) {
     scaling.loss = MakeLoss(options_.loss, options_.scale / kResidualUnit);
   }

@@ -20,7 +20,9 @@ class SolutionRecorder::Watched : public Solver {
   SolverReport Minimize(const SurfaceProblem& problem,
                         DeformationGraph* graph) const override {
     SolverReport report = solver_->Minimize(problem, graph);
-    if (recorder_->records_ && report.usable) recorder_->Keep(problem, *graph);
+    if (recorder_->records_ && report.usable) {
+      recorder_->Keep(problem, report, *graph);
+    }
     return report;
   }
 
@@ -51,8 +53,10 @@ const SolvedProblem* SolutionRecorder::Find(int surface) const {
 }
 
 void SolutionRecorder::Keep(const SurfaceProblem& problem,
+                            const SolverReport& report,
                             const DeformationGraph& solution) {
   SolvedProblem solved{CopyProblem(problem, solution), problem.live};
+  solved.problem.unknowns = FinalUnknowns(report);
   const std::lock_guard<std::mutex> lock(mutex_);
   solved_.insert_or_assign(problem.surface, std::move(solved));
 }

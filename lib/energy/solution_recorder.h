@@ -12,7 +12,9 @@ namespace splitfusion {
 
 /// The last solve of a surface in a frame, with its solution.
 struct SolvedProblem {
-  FrozenProblem problem;  ///< Its graph is the solution; `start` is empty.
+  /// Its graph and unknowns are the solution; `start` is empty. Terms that ask
+  /// for what is not kept (TermContext) count for nothing.
+  FrozenProblem problem;
   /// The live frame of the solve, which is not kept: valid until the next
   /// frame; may be null.
   const LiveView* live = nullptr;
@@ -43,7 +45,8 @@ class SolutionRecorder : public std::enable_shared_from_this<SolutionRecorder> {
  private:
   class Watched;
 
-  void Keep(const SurfaceProblem& problem, const DeformationGraph& solution);
+  void Keep(const SurfaceProblem& problem, const SolverReport& report,
+            const DeformationGraph& solution);
 
   const int every_;
   bool records_ = false;

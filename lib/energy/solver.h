@@ -87,6 +87,9 @@ struct SurfaceProblem {
   const std::vector<TrackedPoint>* tracks = nullptr;
   int surface = 0;           ///< Id; 0 = background.
   TermContext context = {};  ///< As EnergyInput::context.
+  /// Where the terms' own unknowns begin, in order of the energy; empty: at
+  /// their initial values.
+  std::vector<double> unknowns = {};
 };
 
 /// A way to minimise energies. Minimize() may run on several threads at once.
@@ -94,10 +97,11 @@ class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7)
-  /// and composes them onto the motions: R_i <- exp(omega_i) R_i,
-  /// t_i <- t_i + tau_i, see CollectResiduals() and ComposeTwists(). The graph
-  /// is unchanged unless the report says usable.
+  /// Minimises the energy over the twists of all nodes (SplitFusion Eq. 4, 7),
+  /// and over the unknowns of the terms' own, which the report has. Composes
+  /// the twists onto the motions: R_i <- exp(omega_i) R_i, t_i <- t_i + tau_i,
+  /// see CollectResiduals() and ComposeTwists(). The graph is unchanged unless
+  /// the report says usable.
   virtual SolverReport Minimize(const SurfaceProblem& problem,
                                 DeformationGraph* graph) const = 0;
 };

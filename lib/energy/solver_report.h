@@ -17,6 +17,15 @@ struct TermCost {
   double final = 0;
 };
 
+/// What became of an unknown of a term's own.
+struct UnknownEstimate {
+  std::string term;    ///< Registered name of the term.
+  std::string name;    ///< Of the unknown, see Unknown.
+  std::string unit;    ///< Of the values.
+  double initial = 0;  ///< Value before the minimisation.
+  double final = 0;    ///< Value after it.
+};
+
 /// One iteration of the minimiser, as Ceres' IterationSummary has it.
 struct SolverIteration {
   /// 0 is the start.
@@ -30,7 +39,8 @@ struct SolverIteration {
   /// Largest entry of the gradient after the iteration; NaN where it was not
   /// evaluated: by gn_* after the last step.
   double gradient_max_norm = 0;
-  /// Length of the step (radians, metres).
+  /// Length of the step (radians, metres; of the terms' own unknowns in units
+  /// of their scales).
   double step_norm = 0;
   /// Radius that the damping stands for.
   double trust_region_radius = 0;
@@ -64,10 +74,21 @@ struct SolverReport {
   double total_seconds = 0;
   /// Costs by term, in order of the energy.
   std::vector<TermCost> terms;
+  /// Of the terms' own unknowns, in order of the energy.
+  std::vector<UnknownEstimate> unknowns;
   /// All iterations, the start first.
   std::vector<SolverIteration> iterations;
   std::string full_report;  ///< Ceres' FullReport(), on request.
 };
+
+/// What the terms' own unknowns were found to be, as SurfaceProblem::unknowns.
+inline std::vector<double> FinalUnknowns(const SolverReport& report) {
+  std::vector<double> values;
+  for (const UnknownEstimate& unknown : report.unknowns) {
+    values.push_back(unknown.final);
+  }
+  return values;
+}
 
 }  // namespace splitfusion
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -84,6 +85,21 @@ class TermKeys {
   OptionList list_;
 };
 
+/// @throw InputError on unknowns that a term must not declare.
+void CheckUnknowns(const WeightedTerm& term) {
+  std::set<std::string> names;
+  for (const Unknown& unknown : term.term->Unknowns()) {
+    CheckName("unknown", unknown.name);
+    const std::string name = term.options.name + "." + unknown.name;
+    CheckOption(names.insert(unknown.name).second, "unknown of a term", name,
+                "names that differ");
+    CheckOption(std::isfinite(unknown.initial), "initial of unknown " + name,
+                unknown.initial, "a finite number");
+    CheckOption(std::isfinite(unknown.scale) && unknown.scale > 0,
+                "scale of unknown " + name, unknown.scale, "a number above 0");
+  }
+}
+
 WeightedTerm MakeTerm(const std::string& name, const TermRegistry& registry) {
   WeightedTerm term;
   term.options.name = name;
@@ -122,7 +138,10 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
 }
 
 void CheckEnergy(const Energy& energy) {
-  for (WeightedTerm term : energy) TermKeys(&term).Check();
+  for (WeightedTerm term : energy) {
+    TermKeys(&term).Check();
+    CheckUnknowns(term);
+  }
   const bool any = std::any_of(
       energy.begin(), energy.end(),
       [](const WeightedTerm& term) { return term.options.weight > 0; });

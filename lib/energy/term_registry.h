@@ -42,7 +42,9 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry);
 Energy MakeEnergy(const std::vector<TermText>& terms,
                   const TermRegistry& registry);
 
-/// @throw InputError if no term has a weight: nothing would be minimised.
+/// @throw InputError if no term has a weight: nothing would be minimised; or
+///     on unknowns of a term without a name, of one name, or with values that
+///     are none.
 void CheckEnergy(const Energy& energy);
 
 /// Text that ParseEnergy() reads back, every option spelled out.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/energy/term_unknowns.h"
 #include "splitfusion/lib/energy/twist.h"
 #include "splitfusion/lib/energy/warped_points.h"
 
@@ -21,7 +22,8 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
     const WeightedTerm& weighted = problem.energy[i];
     input.options = &weighted.options;
     input.state = states == nullptr ? nullptr : states->Find(problem.energy, i);
-    ResidualSink sink(weighted.options, &cache);
+    ResidualSink sink(weighted.options, &cache,
+                      ScalesOf(weighted.term->Unknowns()));
     weighted.term->AddResiduals(input, &sink);
     ProblemTerm term;
     term.cost.term = weighted.options.name;
@@ -41,6 +43,9 @@ int CountResiduals(const std::vector<ProblemTerm>& terms) {
     }
     if (residuals.of_nodes != nullptr) {
       count += residuals.of_nodes->size() * residuals.of_nodes->dims();
+    }
+    if (residuals.of_unknowns != nullptr) {
+      count += residuals.of_unknowns->rows();
     }
   }
   return count;

@@ -23,7 +23,8 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
 /// Number of scalar residuals of all terms.
 int CountResiduals(const std::vector<ProblemTerm>& terms);
 
-/// Composes the twists (6 per node, [omega, tau]) onto the motions:
+/// Composes the twists (6 per node, [omega, tau]; what follows them is not
+/// looked at) onto the motions:
 /// R_i <- exp(omega_i) R_i, t_i <- t_i + tau_i.
 void ComposeTwists(const std::vector<double>& twists, DeformationGraph* graph);
 

@@ -150,8 +150,11 @@ SolverTrial RunTrial(const std::string& name, const FrozenProblem& problem,
   SolverOptions options = setting.options;
   if (options.solver == "ceres") options.threads = plan.threads;
   DeformationGraph graph = problem.graph;
-  if (plan.start == "cold") graph.motions = *problem.before;
   SurfaceProblem view = problem.View();
+  if (plan.start == "cold") {
+    graph.motions = *problem.before;
+    view.unknowns.clear();
+  }
   view.initial_radius = 0;  // That of the options: this is no round of a run.
   const ThreadLimit limit(plan.threads);
   trial.report = solvers.Make(options.solver, options)->Minimize(view, &graph);

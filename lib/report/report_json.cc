@@ -24,6 +24,14 @@ void to_json(Json& json, const TermCost& term) {
           {"final", term.final}};
 }
 
+void to_json(Json& json, const UnknownEstimate& unknown) {
+  json = {{"term", unknown.term},
+          {"name", unknown.name},
+          {"unit", unknown.unit},
+          {"initial", unknown.initial},
+          {"final", unknown.final}};
+}
+
 void to_json(Json& json, const SolverReport& solver) {
   json = {{"usable", solver.usable},
           {"termination", solver.termination},
@@ -38,6 +46,7 @@ void to_json(Json& json, const SolverReport& solver) {
            {{"jacobian", solver.jacobian_seconds},
             {"linear_solver", solver.linear_solver_seconds},
             {"total", solver.total_seconds}}}};
+  if (!solver.unknowns.empty()) json["unknowns"] = solver.unknowns;
 }
 
 void to_json(Json& json, const TrackingRound& round) {

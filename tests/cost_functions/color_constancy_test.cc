@@ -96,6 +96,46 @@ TEST(ColorConstancyTerm, TakesTheCorrespondencesAndTheCamera) {
   EXPECT_NEAR(EnergyOf(graph, added.residuals), 0.75, 1e-5);
 }
 
+TEST(ExposedColorConstancy, ValueByHand) {
+  const ExposedColorConstancy exposed{Sample(), /*model_intensity=*/0.4};
+  const Eigen::Vector3d x = PointAt(103, 42, 1.3);
+  const auto value = [&](double gain, double offset) {
+    const double unknowns[2] = {gain, offset};
+    double residual = 0;
+    exposed(x.data(), unknowns, &residual);
+    return residual;
+  };
+  EXPECT_EQ(value(1, 0), Value(Sample(), x));
+  // I = 0.54: 0.54 - 1.2 * 0.4 - 0.05.
+  EXPECT_NEAR(value(1.2, 0.05), kUnit * 0.5 * 0.01, 1e-12);
+}
+
+TEST(ExposurePrior, IsZeroWhereTheImageIsAsTheModel) {
+  const ExposurePrior prior{kUnit};
+  double residual[2];
+  const double same[2] = {1, 0}, other[2] = {1.5, -0.1};
+  prior(same, residual);
+  EXPECT_EQ(residual[0], 0);
+  EXPECT_EQ(residual[1], 0);
+  prior(other, residual);
+  EXPECT_NEAR(residual[0], 0.5 * kUnit, 1e-12);
+  EXPECT_NEAR(residual[1], -0.1 * kUnit, 1e-12);
+}
+
+TEST(ColorConstancyTerm, DeclaresGainAndOffsetOnlyIfAskedFor) {
+  const auto unknowns = [](const std::string& text) {
+    return ParseEnergy(text, BuiltinTerms()).front().term->Unknowns();
+  };
+  EXPECT_TRUE(unknowns("color").empty());
+  EXPECT_TRUE(unknowns("color(exposure=false)").empty());
+  const std::vector<Unknown> both = unknowns("color(exposure=true)");
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].name, "gain");
+  EXPECT_EQ(both[0].initial, 1);
+  EXPECT_EQ(both[1].name, "offset");
+  EXPECT_EQ(both[1].initial, 0);
+}
+
 TEST(ColorConstancyTerm, CountsGreyValuesAsAskedFor) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   Correspondence c{};

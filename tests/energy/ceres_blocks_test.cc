@@ -167,14 +167,14 @@ class Scene {
       flat.insert(flat.end(), twist.begin(), twist.end());
     }
     EXPECT_TRUE(problem.Evaluate(flat, /*with_jacobians=*/true));
-    SymmetricBlockMatrix matrix = problem.MakeMatrix();
-    std::vector<Vector6> gradient;
+    BorderedMatrix matrix = problem.MakeMatrix();
+    BorderedVector gradient;
     problem.Assemble(&matrix, &gradient);
     Evaluation evaluation;
     evaluation.cost = problem.Cost();
     evaluation.gradient =
-        Eigen::Map<Eigen::VectorXd>(gradient[0].data(), flat.size());
-    evaluation.gauss_newton = Dense(matrix);
+        Eigen::Map<Eigen::VectorXd>(gradient.nodes[0].data(), flat.size());
+    evaluation.gauss_newton = Dense(matrix.nodes);
     return evaluation;
   }
 

@@ -51,6 +51,7 @@ class FrozenProblemTest : public ::testing::Test {
       correspondences_[i].pixel = {100 + float(i), 50};
       correspondences_[i].intensity_difference = 0.01f * float(i % 5);
       correspondences_[i].intensity_gradient = {0.02f, -0.01f};
+      correspondences_[i].model_intensity = 0.2f + 0.1f * float(i % 6);
     }
     lost_.assign(correspondences_.begin(), correspondences_.begin() + 5);
     tracks_.resize(4);
@@ -129,6 +130,33 @@ TEST_F(FrozenProblemTest, IsSolvedAsTheProblemItself) {
               0)
         << solver;
   }
+}
+
+TEST_F(FrozenProblemTest, KeepsTheUnknownsOfTerms) {
+  const Energy energy = ParseEnergy(
+      "point_to_plane color(weight=2,exposure=true) arap", BuiltinTerms());
+  SurfaceProblem problem = Problem(energy);
+  EXPECT_EQ(Freeze(problem, graph_).unknowns, (std::vector<double>{1, 0}));
+  problem.unknowns = {1.25, -0.125};
+  const FrozenProblem frozen = Freeze(problem, graph_);
+  const FrozenProblem read = ReadFrozenProblem(Written(frozen), BuiltinTerms());
+  EXPECT_EQ(read.unknowns, problem.unknowns);
+  EXPECT_EQ(read.start.by_unknowns, frozen.start.by_unknowns);
+  const ProblemStart start = EvaluateStart(read.View(), read.graph);
+  EXPECT_EQ(start.cost, frozen.start.cost);
+  EXPECT_EQ(start.by_unknowns, frozen.start.by_unknowns);
+  EXPECT_NE(start.by_unknowns[0], 0);
+  SolverOptions options;
+  DeformationGraph own = graph_, replayed = read.graph;
+  const SolverReport report = Minimize(problem, options, &own);
+  const SolverReport replay = Minimize(read.View(), options, &replayed);
+  EXPECT_EQ(report.final_cost, replay.final_cost);
+  EXPECT_EQ(report.unknowns[0].final, replay.unknowns[0].final);
+  FrozenProblem bad = frozen;
+  bad.unknowns.pop_back();
+  bad.start.by_unknowns.pop_back();
+  ExpectInputError([&] { ReadFrozenProblem(Written(bad), BuiltinTerms()); },
+                   "p.h5: unknowns/start: expected one of each of 2 unknowns");
 }
 
 TEST_F(FrozenProblemTest, WhatIsNotThereStaysAway) {

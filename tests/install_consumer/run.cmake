@@ -61,6 +61,18 @@ foreach(frame RANGE 2)
     message(FATAL_ERROR "frame ${frame}: residuals of steady: '${found}'")
   endif()
 endforeach()
+# A term with an unknown of its own, whose estimates are in the report.
+run("${bin}/sf_run" "--terms_library=${stretch}/libbrightness.so"
+    "--output=${STAGE_DIR}/unknown" "--sequence=${STAGE_DIR}/sequence"
+    "--terms=point_to_plane arap(weight=8) brightness")
+file(READ "${STAGE_DIR}/unknown/frames.jsonl" frames)
+string(REGEX MATCHALL
+  "\"term\": ?\"brightness\", ?\"name\": ?\"gain\"[^}]*" gains "${frames}")
+list(REMOVE_DUPLICATES gains)
+list(LENGTH gains count)
+if(count LESS 2)
+  message(FATAL_ERROR "no gains were estimated: ${gains}")
+endif()
 
 # What the library holds decides the result, and not where it lies.
 function(identity library result)

@@ -24,9 +24,9 @@ class Descent : public Solver {
   SolverReport Minimize(const SurfaceProblem& input,
                         DeformationGraph* graph) const override {
     BlockProblem problem(input, *graph);
-    SymmetricBlockMatrix matrix = problem.MakeMatrix();
+    BorderedMatrix matrix = problem.MakeMatrix();
     std::vector<double> twists(kTwistSize * graph->size(), 0.0);
-    std::vector<Vector6> gradient;
+    BorderedVector gradient;
     SolverReport report;
     report.message = "descent";
     problem.Evaluate(twists, /*with_jacobians=*/true);
@@ -39,7 +39,8 @@ class Descent : public Solver {
         for (std::size_t k = 0; k < moved.size(); ++k) {
           const int node = static_cast<int>(k / kTwistSize);
           const int d = static_cast<int>(k % kTwistSize);
-          moved[k] -= length * gradient[node][d] / matrix.Diagonal(node)(d, d);
+          moved[k] -= length * gradient.nodes[node][d] /
+                      matrix.nodes.Diagonal(node)(d, d);
         }
         problem.Evaluate(moved, /*with_jacobians=*/false);
         if (problem.Cost() >= report.final_cost) continue;

@@ -125,11 +125,11 @@ class ReportFormat : public testing::Test {
     if (!HasProgram("sf_synth") || !HasProgram("sf_run")) return;
     RunProgram("sf_synth", "--width=160 --height=120 --frames=4 --output=" +
                                (*folder_ / "sequence"));
-    const ProgramResult run = RunProgram("sf_run",
-                                         "--covariance=1 --pictures_every=0 "
-                                         "--warped_every=1 --sequence=" +
-                                             (*folder_ / "sequence") +
-                                             " --output=" + (*folder_ / "run"));
+    const ProgramResult run = RunProgram(
+        "sf_run",
+        "--covariance=1 --pictures_every=0 --warped_every=1 "
+        "--set=terms.color.exposure=true --sequence=" +
+            (*folder_ / "sequence") + " --output=" + (*folder_ / "run"));
     EXPECT_EQ(run.exit_code, 0) << run.errors;
   }
   static void TearDownTestSuite() { delete folder_; }

@@ -42,6 +42,22 @@ TEST(ReportJson, HoldsSurfacesAndRounds) {
   EXPECT_EQ(round["solver"]["terms"][1]["final"], 0.025);
 }
 
+TEST(ReportJson, HoldsTheUnknownsOfTermsIfThereAreSome) {
+  FrameReport report = SampleReport(0);
+  SolverReport& solver = report.surfaces[0].rounds[0].solver;
+  EXPECT_FALSE(RoundTrip(report)["surfaces"][0]["rounds"][0]["solver"].contains(
+      "unknowns"));
+  solver.unknowns = {{"color", "offset", "grey value", 0, 0.125}};
+  const auto json = RoundTrip(report);
+  const auto& unknown =
+      json["surfaces"][0]["rounds"][0]["solver"]["unknowns"][0];
+  EXPECT_EQ(unknown["term"], "color");
+  EXPECT_EQ(unknown["name"], "offset");
+  EXPECT_EQ(unknown["unit"], "grey value");
+  EXPECT_EQ(unknown["initial"], 0);
+  EXPECT_EQ(unknown["final"], 0.125);
+}
+
 TEST(ReportJson, NumbersThatAreNoneBecomeNull) {
   FrameReport report = SampleReport(0);
   report.surfaces[0].residual_rms = std::numeric_limits<double>::quiet_NaN();

@@ -224,13 +224,19 @@ MeasuredSystem::MeasuredSystem(const EnergyScene& scene)
   SolverOptions options = EnergyScene::Options("gn_pcg");
   options.preconditioner = "jacobi";  // As the floor has it.
   BlockProblem blocks(problem, scene.graph);
-  matrix = blocks.MakeMatrix();
+  BorderedMatrix assembled = blocks.MakeMatrix();
+  BorderedVector by_all, step_of_all;
   radius = options.initial_radius;
   for (int i = 1;; ++i) {
     blocks.Evaluate(twists, /*with_jacobians=*/true);
-    blocks.Assemble(&matrix, &gradient);
+    blocks.Assemble(&assembled, &by_all);
+    matrix = assembled.nodes;
     damped = Damped(matrix, radius);
-    solution = MakePcgSolver(options)->Solve(damped, Negative(gradient), &step);
+    gradient = by_all.nodes;
+    solution = MakePcgSolver(options)->Solve({damped, {}, assembled.corner},
+                                             {Negative(gradient), by_all.own},
+                                             &step_of_all);
+    step = step_of_all.nodes;
     if (i == EnergyScene::kIterations) return;
     for (int k = 0; k < 6 * scene.graph.size(); ++k) {
       twists[k] += step[k / 6][k % 6];
