@@ -18,6 +18,7 @@ const std::map<std::string, Change>& Presets() {
        [](PipelineOptions* o) {
          o->split_scene = false;
          o->deform_background = true;
+         o->terms = PipelineOptions::kDeformingTerms;
        }},
       {"cofusion", [](PipelineOptions* o) { o->deform_objects = false; }},
       {"background_only",
