@@ -25,7 +25,7 @@ namespace splitfusion {
 /// where the nodes agree, and is left shorter where they do not.
 ///
 /// Blocks: the twists of the nodes that carry the point. Residual: 3, metres *
-/// sqrt(confidence). Zero for any translation, and for turns about the normal.
+/// sqrt(confidence). Unchanged by any translation, and by turns about the normal.
 struct NormalDifference {
   /// Residuals of one point.
   static constexpr int kResiduals = 3;  // Layout.

@@ -58,6 +58,18 @@ SymmetricBlockMatrix Information(const SymmetricBlockMatrix& matrix,
   return information;
 }
 
+/// What a direction counts as known to, so that nothing is singular: at least
+/// kLeastInformation, and so much that it is not lost beside what is known
+/// best.
+double LeastInformation(const SymmetricBlockMatrix& information) {
+  constexpr double kPrecision = 1e-12;  // Maths: of a factorisation.
+  double most = 0;
+  for (const Block6& block : information.blocks()) {
+    most = std::max(most, block.diagonal().maxCoeff());
+  }
+  return std::max(kLeastInformation, kPrecision * most);
+}
+
 /// Nodes that carry no point of any residual, ascending.
 std::vector<int> NodesWithoutPoints(const std::vector<ProblemTerm>& terms,
                                     int nodes) {
@@ -100,8 +112,9 @@ NodeCovariance::NodeCovariance(const SurfaceProblem& problem,
   blocks.Assemble(&matrix, &gradient);
   unit_variance_ = UnitVariance(blocks, kTwistSize * graph.size());
   held_by_prior_ = NodesWithoutPoints(blocks.terms(), graph.size());
-  inverse_.emplace(Information(matrix.nodes, unit_variance_, PairsOf(points)),
-                   kLeastInformation);
+  const SymmetricBlockMatrix information =
+      Information(matrix.nodes, unit_variance_, PairsOf(points));
+  inverse_.emplace(information, LeastInformation(information));
 }
 
 Eigen::Matrix3d NodeCovariance::OfPoint(const Skinning& skinning,

@@ -30,11 +30,10 @@ namespace splitfusion {
 ///   factor that is to be fitted (docs/evaluation.md).
 /// - The pairs are right. Where they are not, the surface lies elsewhere, and
 ///   C cannot know.
-/// - One solve, one frame: what has slid along the surface since it was first
-///   seen is no part of it.
-///
 /// - Unknowns of the terms' own are known at their estimates: they are few, and
 ///   all residuals of their term hold them.
+/// - One solve, one frame: what has slid along the surface since it was first
+///   seen is no part of it.
 ///
 /// A direction that is known to no better than 1 m or 1 rad counts as known to
 /// that: a part that nothing holds makes nothing singular.

@@ -49,6 +49,10 @@ class FrameDeviations {
         if (values.size() != mesh.vertices.size()) {
           throw InputError(file + ": expected the property " + name);
         }
+        for (const double sigma : values) {
+          if (std::isfinite(sigma)) continue;
+          throw InputError(file + ": " + name + " is not finite");
+        }
         sigmas_[axis].insert(sigmas_[axis].end(), values.begin(), values.end());
       }
     }
@@ -177,6 +181,11 @@ std::vector<MotionError> MotionErrors(
     }
     AddErrors(run, surfaces, followed, frame, FrameDeviations(paths),
               FrameDeviations(next->second), &errors);
+  }
+  if (errors.empty()) {
+    throw InputError(run.root +
+                     ": no point is on a surface in two successive frames with "
+                     "uncertainty/: expected a run with --covariance=1");
   }
   return errors;
 }
