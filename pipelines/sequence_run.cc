@@ -232,12 +232,15 @@ void SequenceRun::WriteUncertainties(FrameReport* report) const {
   if (!options_.solutions) return;
   for (SurfaceReport& object : report->surfaces) {
     const SolvedProblem* solved = options_.solutions->Find(object.id);
-    const Surface& surface = *work_->fusion.surfaces().at(object.id);
-    if (solved == nullptr || surface.is_ray_cast() || !object.event.empty() ||
+    const auto surface = work_->fusion.surfaces().find(object.id);
+    // One that ended in this frame is there no more.
+    if (solved == nullptr || surface == work_->fusion.surfaces().end() ||
+        surface->second->is_ray_cast() || !object.event.empty() ||
         object.state != TrackState::kTracked) {
       continue;
     }
-    const SurfaceUncertainty found = EstimateUncertainty(surface, *solved);
+    const SurfaceUncertainty found =
+        EstimateUncertainty(*surface->second, *solved);
     object.hold = {found.nodes, found.held_by_prior, Median(found.Sigmas())};
     WriteUncertainty(directory_->paths().Uncertainty(report->frame, object.id),
                      found);
