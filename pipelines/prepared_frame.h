@@ -1,30 +1,34 @@
 #ifndef SPLITFUSION_PIPELINES_PREPARED_FRAME_H_
 #define SPLITFUSION_PIPELINES_PREPARED_FRAME_H_
 
+#include <optional>
 #include <vector>
 
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/segmentation/segmenter.h"
+#include "splitfusion/lib/sequence/color_camera.h"
 #include "splitfusion/lib/sequence/frame.h"
 
 namespace splitfusion {
 
 /// A frame with all that can be known of it without the model.
 struct PreparedFrame {
-  Frame frame;    ///< As it was read.
+  Frame frame;    ///< As it was read, but for colour, which is registered.
   LiveView live;  ///< Points, normals, edges; no labels yet.
   std::vector<InstanceMask> detections;  ///< Of the segmenter.
   double read_seconds = 0;               ///< Spent on reading and on `live`.
   double segment_seconds = 0;            ///< Spent on `detections`.
 };
 
-/// Prepares one frame; `segmenter` may be null.
+/// Prepares one frame; `segmenter` may be null. `color_camera`: of colour
+/// images that are not registered; colour and masks, which are found in it as
+/// it is, are carried over to the pixels of the depth image.
 ///
 /// @throw InputError if an image does not fit the camera, and what the
 /// segmenter throws.
 PreparedFrame PrepareFrame(const PinholeCamera& camera, Frame frame,
-                           const PointMapOptions& options,
-                           Segmenter* segmenter);
+                           const PointMapOptions& options, Segmenter* segmenter,
+                           const std::optional<ColorCamera>& color_camera = {});
 
 }  // namespace splitfusion
 

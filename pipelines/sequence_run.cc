@@ -12,6 +12,7 @@
 #include "splitfusion/lib/base/archive_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/median.h"
+#include "splitfusion/lib/calibration/color_camera_estimate.h"
 #include "splitfusion/lib/model/surface_uncertainty.h"
 #include "splitfusion/lib/report/frame_pictures.h"
 
@@ -44,7 +45,14 @@ Reconstruction::Reconstruction(const std::string& sequence,
                                const Registries& registries)
     : reader(sequence, reading, registries.formats),
       fusion(Checked(reader).camera(), options, labels, segmenter(reader),
-             registries) {}
+             registries) {
+  fusion.set_color_camera(reader.calibration().color);
+  if (reader.calibration().color || reading.color_camera != "auto") return;
+  const ColorCameraEstimate estimate = EstimateColorCamera(reader);
+  if (!estimate.IsNeeded()) return;
+  fusion.set_color_camera(estimate.camera);
+  note = estimate.Text();
+}
 
 SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
                          const Maker& make, RunFolder* folder,
@@ -63,6 +71,7 @@ SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
   done_before_ = done_;
   WriteCalibration(directory_->paths().Calibration(),
                    work_->reader.calibration());
+  WriteColorRegistration();
   frames_.emplace([this] { return ReadNext(); }, options_.reads_ahead);
 }
 
@@ -80,6 +89,14 @@ void SequenceRun::Execute() {
                            " of " + std::to_string(work_->reader.size()) +
                            " frames; what was computed is in " + where_ +
                            ", and the same command goes on");
+}
+
+void SequenceRun::WriteColorRegistration() const {
+  const std::optional<ColorCamera>& camera = work_->fusion.color_camera();
+  if (!camera) return;
+  WriteColorCamera(directory_->paths().ColorCamera(), *camera);
+  if (work_->note.empty()) return;
+  Warn(work_->note + "; registered (--color_camera, docs/your_data.md)");
 }
 
 void SequenceRun::OpenDirectory() {

@@ -66,7 +66,9 @@ struct Reconstruction {
   using SegmenterMaker =
       std::function<std::shared_ptr<Segmenter>(const ImageFolderReader&)>;
 
-  /// Looks at all images first, unless bad ones may be skipped.
+  /// Looks at all images first, unless bad ones may be skipped. Unless the
+  /// options tell where the colour camera is, it is estimated, and used if the
+  /// images are certainly not registered.
   ///
   /// @throw InputError if the sequence or an option cannot be used, or names
   ///     what `registries` do not hold.
@@ -77,6 +79,7 @@ struct Reconstruction {
 
   ImageFolderReader reader;  ///< At its first frame.
   SplitFusion fusion;        ///< Before its first frame.
+  std::string note;          ///< On its colour images; empty if all is well.
 };
 
 /// One run of the method over a sequence into a run directory, with
@@ -110,6 +113,7 @@ class SequenceRun {
 
  private:
   void OpenDirectory();
+  void WriteColorRegistration() const;
   bool Resume();
   void StartFromOther();
   template <typename Archive>

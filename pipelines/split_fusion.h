@@ -45,7 +45,8 @@ class SplitFusion {
   /// at a time.
   PreparedFrame Prepare(const Frame& frame) const {
     return PrepareFrame(camera_, frame, options_.point_map,
-                        options_.split_scene ? segmenter_.get() : nullptr);
+                        options_.split_scene ? segmenter_.get() : nullptr,
+                        color_camera_);
   }
   /// The rest of it.
   FrameReport ProcessFrame(PreparedFrame prepared);
@@ -59,6 +60,15 @@ class SplitFusion {
   const Trajectory& trajectory() const { return trajectory_; }
   /// Intrinsics.
   const PinholeCamera& camera() const { return camera_; }
+  /// The colour images of all frames are from this camera, not registered to
+  /// the depth images; before the first frame.
+  void set_color_camera(const std::optional<ColorCamera>& color_camera) {
+    color_camera_ = color_camera;
+  }
+  /// Of colour images that are not registered.
+  const std::optional<ColorCamera>& color_camera() const {
+    return color_camera_;
+  }
   /// Options in use.
   const PipelineOptions& options() const { return options_; }
   /// What is minimised.
@@ -132,6 +142,7 @@ class SplitFusion {
   Rigid3d WorldFromCamera() const;
 
   PinholeCamera camera_;
+  std::optional<ColorCamera> color_camera_;
   PipelineOptions options_;
   std::shared_ptr<Segmenter> segmenter_;
   SurfaceSplitter splitter_;

@@ -23,8 +23,7 @@
 #include "splitfusion/lib/report/run_paths.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 
-DEFINE_string(set, "",
-              "KEY=VALUE; ...: flags, [CLASS.]terms.arap.weight=4.");
+DEFINE_string(set, "", "KEY=VALUE; ...: flags, [CLASS.]terms.arap.weight=4.");
 DEFINE_string(energy, "", "Terms of a paper, by name; see docs/terms.md.");
 DECLARE_string(class_names);
 DECLARE_int32(at);
@@ -45,6 +44,7 @@ namespace fs = std::filesystem;
 const std::set<std::string>& Uncounted() {
   static const std::set<std::string> names = {"checkpoint_every",
                                               "class_names",
+                                              "color_camera",
                                               "energy",
                                               "keep_same",
                                               "labels",
@@ -132,6 +132,8 @@ NamedValues InputParts(const ImageFolderReader& reader) {
     camera += (camera.empty() ? "" : " ") + NumberText(value);
   }
   parts["input.camera"] = camera;
+  parts["input.color_camera"] =
+      used.color ? ToText(*used.color) : reader.options().color_camera;
   return parts;
 }
 

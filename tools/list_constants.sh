@@ -11,7 +11,7 @@ import os
 import re
 
 FOLDERS = ("lib", "pipelines", "cost_functions")
-OTHER = re.compile("lib/(base|sequence|segmentation|report|evaluation|"
+OTHER = re.compile("lib/(base|calibration|sequence|segmentation|report|evaluation|"
                    "experiment|synthetic)/")
 MARKED = re.compile(r"//[/<]*\s*(Layout|Speed|Format|Unit|Maths|Flag)\b[.:]")
 NUMBER = r"-?(?:\d[\d']*\.?\d*(?:e[-+]?\d+)?|\.\d+)[fu]?\b"

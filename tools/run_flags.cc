@@ -16,6 +16,9 @@
 DEFINE_string(preset, "splitfusion", "Method, by name; see docs/presets.md.");
 DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
 DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
+DEFINE_string(
+    color_camera, "auto",
+    "File of the camera of colour that is not registered, auto, none.");
 DEFINE_string(trajectory, "", "TUM text of known camera poses.");
 DEFINE_bool(skip_bad_frames, false,
             "Leave out frames whose images are missing or broken.");
@@ -49,6 +52,7 @@ ReaderOptions ReaderOptionsFromFlags() {
   options.depth_scale = FLAGS_depth_scale;
   options.skip_bad_frames = FLAGS_skip_bad_frames;
   options.trajectory = FLAGS_trajectory;
+  options.color_camera = FLAGS_color_camera;
   options.depth = DepthFlags();
   if (!FLAGS_intrinsics.empty()) {
     options.camera = ParseIntrinsics(FLAGS_intrinsics);

@@ -27,6 +27,7 @@ std::string RunPaths::Unfinished() const { return Below("unfinished"); }
 std::string RunPaths::Checkpoint() const { return Below("checkpoint.bin"); }
 std::string RunPaths::Options() const { return Below("options.flags"); }
 std::string RunPaths::Calibration() const { return Below("calibration.txt"); }
+std::string RunPaths::ColorCamera() const { return Below("color_camera.txt"); }
 std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }
 std::string RunPaths::Frames() const { return Below("frames.jsonl"); }
 std::string RunPaths::Iterations() const { return Below("iterations.csv"); }
@@ -65,13 +66,14 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
 
 bool RunPaths::IsOfRun(const std::string& name) {
   const RunPaths here("");
-  const std::array<std::string, 18> names = {
+  const std::array<std::string, 19> names = {
       here.Marker(),     here.Checkpoint(),  "checkpoints",
       here.Options(),    here.Calibration(), here.Trajectory(),
       here.Frames(),     here.Iterations(),  here.Summary(),
       here.Evaluation(), here.HtmlReport(),  here.Pictures(),
       here.Detections(), "solver",           "masks",
-      "surfaces",        "problems",         "uncertainty"};
+      "surfaces",        "problems",         "uncertainty",
+      here.ColorCamera()};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 

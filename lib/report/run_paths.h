@@ -24,6 +24,7 @@ class RunPaths {
   }
   std::string Options() const;      ///< RUN/options.flags
   std::string Calibration() const;  ///< RUN/calibration.txt
+  std::string ColorCamera() const;  ///< RUN/color_camera.txt
   std::string Trajectory() const;   ///< RUN/trajectory.txt
   std::string Frames() const;       ///< RUN/frames.jsonl
   std::string Iterations() const;   ///< RUN/iterations.csv

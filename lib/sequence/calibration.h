@@ -5,6 +5,7 @@
 #include <string>
 
 #include "splitfusion/lib/geometry/camera.h"
+#include "splitfusion/lib/sequence/color_camera.h"
 
 namespace splitfusion {
 
@@ -12,6 +13,8 @@ namespace splitfusion {
 struct Calibration {
   PinholeCamera camera;    ///< Intrinsics.
   double depth_scale = 0;  ///< Depth image units in a metre (TUM: 5000).
+  /// Of colour images that are known not to be registered to the depth images.
+  std::optional<ColorCamera> color = {};
 
   /// @throw InputError if the camera or the scale is out of range.
   void Check() const;

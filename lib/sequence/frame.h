@@ -9,7 +9,8 @@
 
 namespace splitfusion {
 
-/// One RGB-D frame; colour and depth are registered and of equal size.
+/// One RGB-D frame; colour and depth are of equal size, and registered unless
+/// Calibration::color says otherwise.
 struct Frame {
   int index = 0;         ///< Position in the sequence, from 0.
   double timestamp = 0;  ///< Of the depth image, seconds.

@@ -17,6 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::optional<ColorCamera> ResolveColorCamera(const std::string& folder,
+                                              const std::string& option) {
+  if (option == "none") return std::nullopt;
+  if (option != "auto") return ReadColorCamera(option);
+  const fs::path file = fs::path(folder) / kColorCameraFile;
+  if (!fs::exists(file)) return std::nullopt;
+  return ReadColorCamera(file.string());
+}
+
 /// The values that the format finds, each replaced by the option if given.
 Calibration ResolveCalibration(const std::string& folder,
                                const SequenceFormat& format,
@@ -33,6 +42,7 @@ Calibration ResolveCalibration(const std::string& folder,
   if (options.camera) calibration.camera = *options.camera;
   calibration.camera.noise = options.depth.noise;
   if (options.depth_scale > 0) calibration.depth_scale = options.depth_scale;
+  calibration.color = ResolveColorCamera(folder, options.color_camera);
   calibration.Check();
   return calibration;
 }

@@ -46,6 +46,11 @@ class ImageFolderReader {
   /// @throw InputError on a missing or broken image; names the file.
   std::optional<Frame> Next();
 
+  /// The i-th frame, 0..size() - 1, whatever Next() gives next.
+  ///
+  /// @throw InputError on a missing or broken image; names the file.
+  Frame Read(int i) const;
+
   /// Looks at the files of all frames, without decoding them: that they are
   /// there, whole as far as their headers and ends show, and of the right size
   /// and type. Thousands a second. Returns those that are not, in order.
@@ -77,14 +82,13 @@ class ImageFolderReader {
   const std::string& folder() const { return folder_; }
   /// How it is read, as it was given, but for the format that "auto" found.
   const ReaderOptions& options() const { return options_; }
-  /// Intrinsics and depth scale in use.
+  /// Intrinsics, depth scale and colour camera in use.
   const Calibration& calibration() const { return calibration_; }
 
  private:
   cv::Size ExpectedSize() const;
   /// @throw InputError if the images of the i-th frame cannot be used.
   void CheckFiles(int i) const;
-  Frame Read(int i) const;
   std::optional<Frame> ReadOrSkip();
   /// @throw InputError if no frame is left.
   void SkipBadFrames();

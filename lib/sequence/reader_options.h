@@ -21,6 +21,10 @@ struct ReaderOptions {
   DepthOptions depth;  ///< Of every depth image.
   /// Frames whose images are missing or broken are left out; indices stay.
   bool skip_bad_frames = false;
+  /// Where colour images are from that are not registered to the depth images:
+  /// a file of ReadColorCamera(); "auto": `color_camera.txt` of the sequence if
+  /// there is one; "none": they are registered.
+  std::string color_camera = "auto";
   /// TUM text file of known poses, one of every frame; empty: none.
   std::string trajectory;
 

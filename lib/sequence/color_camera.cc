@@ -1,0 +1,79 @@
+#include "splitfusion/lib/sequence/color_camera.h"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <vector>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
+
+namespace splitfusion {
+
+ColorCamera ColorCamera::Registered(const PinholeCamera& depth_camera) {
+  ColorCamera color;
+  color.fx = depth_camera.fx;
+  color.fy = depth_camera.fy;
+  color.cx = depth_camera.cx;
+  color.cy = depth_camera.cy;
+  return color;
+}
+
+void ColorCamera::Check() const {
+  CheckOption(std::isfinite(fx) && fx > 0, "fx of the colour camera", fx,
+              "a focal length > 0 in pixels");
+  CheckOption(std::isfinite(fy) && fy > 0, "fy of the colour camera", fy,
+              "a focal length > 0 in pixels");
+  CheckOption(std::isfinite(cx), "cx of the colour camera", cx, "pixels");
+  CheckOption(std::isfinite(cy), "cy of the colour camera", cy, "pixels");
+  CheckOption(color_from_depth.matrix().allFinite(),
+              "pose of the colour camera", "nan",
+              "finite numbers");
+}
+
+ColorCamera ReadColorCamera(const std::string& path) {
+  const std::string expected = "'fx fy cx cy tx ty tz qx qy qz qw'";
+  const std::vector<TextLine> lines =
+      ReadTextLines(path, /*cut_comments=*/true);
+  if (lines.empty()) throw InputError(path + ": no line: expected " + expected);
+  ColorCamera camera;
+  Eigen::Vector3d t;
+  Eigen::Quaterniond q;
+  std::istringstream words(lines[0].text);
+  if (!(words >> camera.fx >> camera.fy >> camera.cx >> camera.cy >> t.x() >>
+        t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w()) ||
+      !(words >> std::ws).eof()) {
+    lines[0].Refuse(expected);
+  }
+  camera.color_from_depth.linear() = q.normalized().toRotationMatrix();
+  camera.color_from_depth.translation() = t;
+  try {
+    CheckOption(q.norm() > 0, "quaternion of the colour camera", q.norm(),
+                "one that is not 0");
+    camera.Check();
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  }
+  return camera;
+}
+
+std::string ToText(const ColorCamera& camera) {
+  const Eigen::Vector3d t = camera.color_from_depth.translation();
+  const Eigen::Quaterniond q(camera.color_from_depth.linear());
+  std::ostringstream text;
+  text << std::setprecision(17) << camera.fx << ' ' << camera.fy << ' '
+       << camera.cx << ' ' << camera.cy << ' ' << t.x() << ' ' << t.y() << ' '
+       << t.z() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w();
+  return text.str();
+}
+
+void WriteColorCamera(const std::string& path, const ColorCamera& camera) {
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << "# colour camera: fx fy cx cy (pixels), then colour from depth: tx "
+           "ty tz (metres) qx qy qz qw\n"
+        << ToText(camera) << '\n';
+  });
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,49 @@
+#include "splitfusion/lib/sequence/color_camera.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/expect_input_error.h"
+#include "support/temporary_folder.h"
+
+namespace splitfusion {
+namespace {
+
+TEST(ColorCamera, IsReadAsItWasWritten) {
+  const TemporaryFolder folder;
+  ColorCamera camera;
+  camera.fx = 525.1;
+  camera.fy = 526.2;
+  camera.cx = 319.3;
+  camera.cy = 240.4;
+  camera.color_from_depth.linear() =
+      Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  camera.color_from_depth.translation() = Eigen::Vector3d(-0.025, 0.001, 0);
+  const std::string path = folder / "color_camera.txt";
+  WriteColorCamera(path, camera);
+  const ColorCamera read = ReadColorCamera(path);
+  EXPECT_DOUBLE_EQ(read.fx, 525.1);
+  EXPECT_DOUBLE_EQ(read.cy, 240.4);
+  EXPECT_TRUE(read.color_from_depth.isApprox(camera.color_from_depth, 1e-12));
+}
+
+TEST(ColorCamera, NamesWhatIsWrong) {
+  const TemporaryFolder folder;
+  const auto file = [&](const std::string& text) {
+    return [path = folder.Write("color_camera.txt", text)] {
+      ReadColorCamera(path);
+    };
+  };
+  ExpectInputError(file("# nothing\n"), "no line");
+  ExpectInputError(file("525 525 320 240 0 0 0\n"), "color_camera.txt:1");
+  ExpectInputError(file("525 525 320 240 0 0 0 0 0 0 1 7\n"),
+                   "color_camera.txt:1");
+  ExpectInputError(file("-525 525 320 240 0 0 0 0 0 0 1\n"),
+                   "fx of the colour camera");
+  ExpectInputError(file("525 525 320 240 0 0 0 0 0 0 0\n"),
+                   "quaternion of the colour camera");
+}
+
+}  // namespace
+}  // namespace splitfusion
