@@ -1,5 +1,7 @@
 #include "splitfusion/pipelines/pipeline_options.h"
 
+#include "splitfusion/lib/geometry/depth_comparison.h"
+
 namespace splitfusion {
 
 PipelineOptions::PipelineOptions() {
@@ -44,6 +46,12 @@ void PipelineOptions::List(OptionList* list) {
                "A surface that was lost or hidden is found only if its paired "
                "model points are this share of its live pixels (edges apart); "
                "0 = not asked.");
+  list->Number(
+      "own_motion_gain", &own_motion_gain, {0, kNoiseSigmas * kNoiseSigmas},
+      "variances of the noise",
+      "A detection of a rigid class moves, and is no background any more, if a "
+      "motion of its own lowers the mean squared distance of its mapped points "
+      "to the depth by so much; 0 = not looked for.");
   list->Number("min_birth_area", &min_birth_area, {0, 1, false, true},
                "of the image", "A surface is modelled once it covers as much.");
   list->Number("max_lost", &max_lost, Range::AtLeast(1), "frames",

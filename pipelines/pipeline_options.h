@@ -60,6 +60,10 @@ struct PipelineOptions {
   /// its model points lie on it as this share of those that are certain, at the
   /// same stride: a sliver fits anywhere; 0 = not asked.
   double min_coverage = 0.25;
+  /// A detection of a rigid class moves if a motion of its own lowers the
+  /// squared distance between the mapped background and its depth by so many
+  /// variances of the noise, for the mean point; 0 = not looked for.
+  double own_motion_gain = 0.5;
   /// Fraction of the image a surface has to cover before it is modelled.
   double min_birth_area = 0.008;
   /// A deforming surface that is lost in plain view in so many frames, and

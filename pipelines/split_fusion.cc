@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -48,7 +49,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
     // Surfaces are tracked at the same time: none is to add itself.
     for (const auto& entry : surfaces_) term_states_[entry.first];
     FollowPoints(&report);
-    TrackBackground(frame.world_from_camera.has_value(), &report);
+    TrackCamera(frame.world_from_camera.has_value(), &report);
     TrackObjects(&report);
     Fuse(&report);
     ReanchorLostSurfaces(&report);
@@ -92,6 +93,7 @@ void SplitFusion::Split(const PreparedFrame& prepared, FrameReport* report) {
   live_.labels = split.labels;
   if (!split.uncertain.empty()) live_.uncertain = split.uncertain;
   report->decisions = std::move(split.decisions);
+  detected_standing_ = std::move(split.standing);
   const bool gone = EndGoneTracks();
   FollowTracks();
   report->split_seconds = stopwatch.Restart();
@@ -143,27 +145,44 @@ bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
   return tracked;
 }
 
-void SplitFusion::TrackBackground(bool given, FrameReport* report) {
-  Stopwatch stopwatch;
-  Surface& background = *surfaces_.at(0);
-  SurfaceReport surface;
-  surface.id = 0;
-  if (given) {
-    background_state_ = TrackState::kTracked;
-    report->surfaces.push_back(std::move(surface));
-    return;
-  }
-  const std::vector<ModelSample> samples =
+std::vector<ModelSample> SplitFusion::BackgroundInView(
+    FrameReport* report) const {
+  const Stopwatch stopwatch;
+  const Surface& background = *surfaces_.at(0);
+  std::vector<ModelSample> samples =
       background.is_ray_cast()
           ? BackgroundSamples(background_map_,
                               MeanRigidMotion(background.graph()),
                               options_.render_stride)
           : VisibleSamples(rendering_, background, options_.render_stride);
-  surface.render_seconds = stopwatch.Restart();
+  report->render_seconds += stopwatch.Seconds();
+  return samples;
+}
+
+void SplitFusion::TrackCamera(bool given, FrameReport* report) {
+  if (given) {
+    background_state_ = TrackState::kTracked;
+    report->surfaces.emplace_back().id = 0;
+    return;
+  }
+  const std::vector<ModelSample> samples = BackgroundInView(report);
+  TrackBackground(samples, predictors_.at(0).velocity().inverse(), report);
+  standing_.Detect(std::move(detected_standing_), frame_.index,
+                   options_.split.max_missed_frames, options_.render_stride,
+                   camera_, MeanRigidMotion(surfaces_.at(0)->graph()));
+  while (SetMoversApart(samples, report)) {
+    TrackBackground(samples, Rigid3d::Identity(), report);
+  }
+}
+
+void SplitFusion::TrackBackground(const std::vector<ModelSample>& samples,
+                                  const Rigid3d& still, FrameReport* report) {
+  Surface& background = *surfaces_.at(0);
+  SurfaceReport surface;
+  surface.id = 0;
   const Rigid3d predicted = MeanRigidMotion(background.graph());
   background_state_ =
-      TrackSurface(samples, predictors_.at(0).velocity().inverse(),
-                   /*goes_on=*/true, &background, &surface)
+      TrackSurface(samples, still, /*goes_on=*/true, &background, &surface)
           ? TrackState::kTracked
           : TrackState::kLost;
   // A camera motion moves every surface.
@@ -172,7 +191,29 @@ void SplitFusion::TrackBackground(bool given, FrameReport* report) {
   for (const auto& [id, object] : surfaces_) {
     if (id != 0) ApplyRigidMotion(correction, object->mutable_graph());
   }
-  report->surfaces.push_back(std::move(surface));
+  report->surfaces.assign(1, std::move(surface));
+}
+
+bool SplitFusion::SetMoversApart(const std::vector<ModelSample>& samples,
+                                 FrameReport* report) {
+  Surface& background = *surfaces_.at(0);
+  if (options_.own_motion_gain == 0 || !background.is_ray_cast() ||
+      background_state_ != TrackState::kTracked) {
+    return false;
+  }
+  const Stopwatch stopwatch;
+  const std::vector<StandingObjects::Moving> moving = standing_.TakeMoving(
+      samples, live_, background.graph(), tracker_,
+      options_.tracker.grazing_angle * M_PI / 180, options_.own_motion_gain);
+  for (const auto& [object, motion] : moving) {
+    background.Forget(motion.points);
+    live_.uncertain.setTo(255, object.mask & (live_.labels == 0));
+    splitter_.BelieveMoving(object);
+    report->decisions.push_back(
+        {"moves", 0, object.class_name, object.score, 0});
+  }
+  report->associate_seconds += stopwatch.Seconds();
+  return !moving.empty();
 }
 
 void SplitFusion::TrackObjects(FrameReport* report) {

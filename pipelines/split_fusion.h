@@ -18,6 +18,7 @@
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/registries.h"
+#include "splitfusion/pipelines/standing_objects.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
@@ -77,7 +78,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 12;  // Format.
+  static constexpr std::uint32_t kStateVersion = 13;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -102,8 +103,18 @@ class SplitFusion {
   bool TrackSurface(const std::vector<ModelSample>& samples,
                     const Rigid3d& still, bool goes_on, Surface* surface,
                     SurfaceReport* report);
-  /// Leaves it where it is predicted if the pose of the camera is `given`.
-  void TrackBackground(bool given, FrameReport* report);
+  /// What is in view of the background, where it is predicted.
+  std::vector<ModelSample> BackgroundInView(FrameReport* report) const;
+  /// Moves the background, which comes in at the predicted motion, as
+  /// TrackSurface() does, and all other surfaces with it.
+  void TrackBackground(const std::vector<ModelSample>& samples,
+                       const Rigid3d& still, FrameReport* report);
+  /// Sets standing objects apart that move on their own: the background
+  /// forgets them, and their pixels are no part of it. Whether there are any.
+  bool SetMoversApart(const std::vector<ModelSample>& samples,
+                      FrameReport* report);
+  /// The pose of the camera, `given` or tracked, apart from such objects.
+  void TrackCamera(bool given, FrameReport* report);
   /// Every object on its own and at the same time.
   void TrackObjects(FrameReport* report);
   /// Reports of all objects: what is in view of each.
@@ -154,6 +165,8 @@ class SplitFusion {
   std::map<int, TermStates> term_states_;
   FrameFacts frame_;  ///< That in hand.
   LiveView live_;
+  StandingObjects standing_;
+  std::vector<StandingObject> detected_standing_;  ///< In the frame in hand.
   MeshRendering rendering_;
   ModelMap background_map_;
   /// By surface; of the background in the camera frame, of others in world.

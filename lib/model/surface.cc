@@ -146,6 +146,10 @@ int Surface::Fuse(const LiveView& live) {
   return 0;
 }
 
+void Surface::Forget(const std::vector<Eigen::Vector3f>& places) {
+  ForgetAround(places, options_.tsdf.truncation, &volume_);
+}
+
 int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
   std::vector<Eigen::Vector3f> warped = WarpedVertices();
   refuted_.Look(live, id_, warped, mesh_skinning(), graph_.size(),

@@ -70,6 +70,10 @@ class Surface {
   /// nodes whose parts were forgotten.
   int Fuse(const LiveView& live);
 
+  /// Forgets what was fused within the truncation from these places of the
+  /// canonical frame (metres), of a rigid surface: it is not of this one.
+  void Forget(const std::vector<Eigen::Vector3f>& places);
+
   /// Extracts the canonical mesh; its graph follows it.
   void UpdateMesh();
 

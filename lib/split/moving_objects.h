@@ -40,6 +40,10 @@ class MovingObjects {
   cv::Mat_<uchar> Watch(const MotionView& view,
                         std::vector<Candidate>* candidates);
 
+  /// Whether a candidate is of a rigid class and no background for no other
+  /// reason than that.
+  bool IsWatched(const Candidate& candidate) const;
+
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
@@ -47,8 +51,6 @@ class MovingObjects {
   }
 
  private:
-  bool IsWatched(const Candidate& candidate) const;
-
   SplitOptions options_;
   SeenSpace space_;
 };

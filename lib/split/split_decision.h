@@ -11,7 +11,8 @@ struct SplitDecision {
   /// a new surface that turned out to be one that had left. "born", "revived":
   /// a new surface, an inactive one seen again. "missed", "inactive": a surface
   /// without detection, carried or given up. "pending", "ignored": a detection
-  /// that may yet become a surface, or may not.
+  /// that may yet become a surface, or may not. "moves": an ignored one of a
+  /// rigid class that is found to move on its own.
   std::string action;
   int surface = 0;         ///< Surface id, 0 if none.
   std::string class_name;  ///< Of the detection, or of a missed surface.

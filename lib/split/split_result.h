@@ -2,12 +2,28 @@
 #define SPLITFUSION_LIB_SPLIT_SPLIT_RESULT_H_
 
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
+#include "splitfusion/lib/split/appearance.h"
 #include "splitfusion/lib/split/split_decision.h"
 #include "splitfusion/lib/split/surface_prediction.h"
 
 namespace splitfusion {
+
+/// A detection of a rigid class that counts as background.
+struct StandingObject {
+  cv::Mat_<uchar> mask;    ///< HxW, 255 inside.
+  std::string class_name;  ///< As detected.
+  double score = 0;        ///< 0..1.
+  Appearance appearance;   ///< Of its pixels.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(mask, class_name, score, appearance);
+  }
+};
 
 /// Result of one frame.
 struct SplitResult {
@@ -16,6 +32,8 @@ struct SplitResult {
   /// foreign or unexplained instance to be tracked or fused as such.
   cv::Mat uncertain;
   std::vector<SplitDecision> decisions;  ///< In the order they were taken.
+  /// Those that move are to be told by SurfaceSplitter::BelieveMoving().
+  std::vector<StandingObject> standing;
 };
 
 }  // namespace splitfusion

@@ -108,6 +108,7 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                                    const SurfacePrediction& prediction) {
   CheckSizes(frame, detections, prediction);
   ++frames_;
+  last_frame_ = frame.index;
   SurfacePrediction prior = CompletePrediction(
       prediction, last_, Followed(tracks_), {camera_.width, camera_.height});
   ComparedDepth compared =
@@ -123,6 +124,7 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                        {tracks_, tentative_.all(), compared.labels,
                         compared.agreement, frame.index},
                        options_.assignment);
+  FollowMoving(matches, &candidates, &unconfirmed);
   RecognizeReturned(frame.index, &compared.labels, &matches, &result.decisions);
   TakeOutParts(groups_, candidates, tracks_, &compared, &matches);
   TakeOutOthers(candidates, tracks_, &compared);
@@ -139,10 +141,16 @@ SplitResult SurfaceSplitter::Split(const Frame& frame, const PointMap& points,
                    &result.decisions);
   }
   tentative_.EndFrame(frame.index);
+  result.standing = StandingObjects(candidates, matches);
   result.labels = DrawLabels(segments, segment_labels);
   result.uncertain = DrawUncertain(segments, result.labels, unconfirmed, input);
   Remember(segments, result, input);
   return result;
+}
+
+void SurfaceSplitter::BelieveMoving(const StandingObject& object) {
+  tentative_.AddMoving(object.mask, object.appearance, last_frame_,
+                       2 * options_.birth_frames);
 }
 
 void SurfaceSplitter::CheckSizes(const Frame& frame,
@@ -195,6 +203,36 @@ cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
        input.prior.world_from_camera, claimed,
        input.compared.background == static_cast<int>(DepthState::kOccluded)},
       candidates);
+}
+
+void SurfaceSplitter::FollowMoving(const std::vector<Match>& matches,
+                                   std::vector<Candidate>* candidates,
+                                   cv::Mat_<uchar>* unconfirmed) const {
+  for (const TentativeTrack& track : tentative_.all()) {
+    if (track.moves) *unconfirmed |= track.mask;
+  }
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const int index = matches[i].tentative;
+    if (index >= 0 && tentative_.all()[index].moves) {
+      (*candidates)[i].moved = true;
+    }
+  }
+}
+
+std::vector<StandingObject> SurfaceSplitter::StandingObjects(
+    const std::vector<Candidate>& candidates,
+    const std::vector<Match>& matches) const {
+  std::vector<StandingObject> standing;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    if (matches[i].surface > 0 || candidate.moved ||
+        !objects_.IsWatched(candidate)) {
+      continue;
+    }
+    standing.push_back({candidate.mask, candidate.class_name, candidate.score,
+                        candidate.appearance});
+  }
+  return standing;
 }
 
 void SurfaceSplitter::RecognizeReturned(int frame, LabelImage* predicted,

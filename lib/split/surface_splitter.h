@@ -39,6 +39,11 @@ class SurfaceSplitter {
                     const std::vector<InstanceMask>& detections,
                     const SurfacePrediction& prediction);
 
+  /// Takes a detection of SplitResult::standing of the last frame for something
+  /// that moves: what is found to be the same in the next frames becomes a
+  /// surface at once, and until then it is no background.
+  void BelieveMoving(const StandingObject& object);
+
   /// Every surface ever born, by id.
   const TrackTable& tracks() const { return tracks_; }
   /// One of them, to tell it how tracking went.
@@ -69,6 +74,14 @@ class SurfaceSplitter {
   /// Marks candidates as moved; returns what is no background therefore.
   cv::Mat_<uchar> WatchObjects(const Input& input,
                                std::vector<Candidate>* candidates);
+  /// Marks candidates that were found to move before, and adds what such things
+  /// that are not detected now may cover to `unconfirmed`.
+  void FollowMoving(const std::vector<Match>& matches,
+                    std::vector<Candidate>* candidates,
+                    cv::Mat_<uchar>* unconfirmed) const;
+  std::vector<StandingObject> StandingObjects(
+      const std::vector<Candidate>& candidates,
+      const std::vector<Match>& matches) const;
   /// Gives the detections and the predicted pixels of new surfaces that turn
   /// out to be known ones to these.
   void RecognizeReturned(int frame, LabelImage* predicted,
@@ -111,6 +124,7 @@ class SurfaceSplitter {
   TentativeTracks tentative_;
   MovingObjects objects_;
   SurfacePrediction last_;  // Own labels and live depth of the frame before.
+  int last_frame_ = 0;      // Index.
   int frames_ = 0;          // Split so far, the current one included.
 };
 

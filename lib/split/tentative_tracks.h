@@ -14,11 +14,12 @@ struct TentativeTrack {
   Appearance appearance;  ///< Then.
   int frame = 0;          ///< Of that detection.
   double evidence = 0;    ///< In detections: see TentativeTracks.
+  bool moves = false;     ///< Of a rigid class, and moves on its own.
 
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(mask, appearance, frame, evidence);
+    (*archive)(mask, appearance, frame, evidence, moves);
   }
 };
 
@@ -34,6 +35,13 @@ class TentativeTracks {
   /// -1, and returns its index. `counts`: whether it speaks for a surface.
   int Record(int index, int frame, const cv::Mat_<uchar>& mask,
              const Appearance& appearance, bool counts);
+
+  /// Adds a thing that was found to move, with the evidence of so many
+  /// detections.
+  void AddMoving(const cv::Mat_<uchar>& mask, const Appearance& appearance,
+                 int frame, double evidence) {
+    tracks_.push_back({mask, appearance, frame, evidence, /*moves=*/true});
+  }
 
   /// The track has become a surface: it is forgotten at the end of the frame.
   void Confirm(int index) { tracks_.at(index).evidence = 0; }

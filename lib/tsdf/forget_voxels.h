@@ -14,6 +14,11 @@ namespace splitfusion {
 void ForgetVoxels(const DeformationGraph& graph, const SkinningIndex& index,
                   const std::vector<char>& nodes, TsdfVolume* volume);
 
+/// The same for those within `radius` (metres) of one of these places of the
+/// canonical frame (metres).
+void ForgetAround(const std::vector<Eigen::Vector3f>& places, double radius,
+                  TsdfVolume* volume);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_TSDF_FORGET_VOXELS_H_

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/sample_depth.h"
 #include "support/synthetic_run.h"
 
 namespace splitfusion {
@@ -23,6 +24,17 @@ void AddBoard(int shift, Frame* frame, std::vector<InstanceMask>* detections) {
   cv::Mat mask = cv::Mat::zeros(frame->depth.size(), CV_8UC1);
   mask(at) = 255;
   detections->push_back({mask, "suitcase", 0.9});
+}
+
+/// Puts a ball into the room whose middle is at `place` (camera frame, metres);
+/// with its detection.
+void AddBall(const Eigen::Vector3d& place, const PinholeCamera& camera,
+             Frame* frame, std::vector<InstanceMask>* detections) {
+  const cv::Mat_<float> ball = SphereDepth(camera, place, 0.25);
+  const cv::Mat mask = ball > 0;
+  ball.copyTo(frame->depth, mask);
+  frame->color.setTo(cv::Scalar(40, 90, 160), mask);
+  detections->push_back({mask, "sports ball", 0.9});
 }
 
 const Surface* FindSurface(const SplitFusion& fusion, const std::string& name) {
@@ -70,6 +82,28 @@ TEST(MovingObject, BecomesARigidSurfaceThatIsTrackedWhenItMoves) {
   EXPECT_GT(cv::countNonZero(labels(at) == 1), 0.97 * at.area());
   labels(at) = 0;
   EXPECT_LT(cv::countNonZero(labels), 0.03 * at.area());
+}
+
+TEST(MovingObject, IsForgottenByTheBackgroundAsItBeginsToMove) {
+  SyntheticRun run(EmptyRoom(/*camera_motion=*/0));
+  const Eigen::Vector3d place(0, 0, 1.5), step(0.002, 0, -0.003);
+  for (int i = 0; i < kFrames; ++i) {
+    const int steps = std::max(0, i - kStart);
+    run.Next([&](Frame* frame, std::vector<InstanceMask>* detections) {
+      AddBall(place + steps * step, run.fusion().camera(), frame, detections);
+    });
+  }
+  const Surface* ball = FindSurface(run.fusion(), "sports ball");
+  ASSERT_NE(ball, nullptr);
+  EXPECT_GT(ball->first_frame(), kStart);
+  EXPECT_LT(ball->first_frame(), kStart + 8);
+  EXPECT_EQ(run.fusion().surfaces().size(), 2u);
+  run.fusion().Finish();
+  int left = 0;
+  for (const auto& v : run.fusion().surfaces().at(0)->mesh().vertices) {
+    left += (v.cast<double>() - place).norm() < 0.3;
+  }
+  EXPECT_EQ(left, 0);
 }
 
 TEST(MovingObject, AChairThatNobodyMovesStaysBackground) {

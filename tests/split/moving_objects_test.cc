@@ -88,6 +88,28 @@ TEST_F(MovingObjectsTest, WhatHasMovedIsNotMappedWhileItWaits) {
             0.9 * cv::countNonZero(entered));
 }
 
+TEST_F(MovingObjectsTest, AChairThatIsBelievedToMoveBecomesASurfaceAtOnce) {
+  for (int i = 0; i < 12; ++i) Step(20);
+  ASSERT_EQ(last_.standing.size(), 1u);
+  splitter_.BelieveMoving(last_.standing.front());
+  Step(21);
+  EXPECT_EQ(Count("born"), 1);
+  EXPECT_TRUE(last_.standing.empty());
+  EXPECT_GT(IouOf(1, truth_), 0.95);
+  EXPECT_EQ(splitter_.tracks().at(1).kind, SurfaceKind::kRigid);
+}
+
+TEST_F(MovingObjectsTest, WhatIsBelievedToMoveIsNoBackgroundWithoutDetection) {
+  for (int i = 0; i < 12; ++i) Step(20);
+  splitter_.BelieveMoving(last_.standing.front());
+  LayeredScene scene(3.0, next_frame_);
+  scene.Add(ChairAt(20), 2.0, 1);
+  Split(scene, {}, WallAlone());
+  EXPECT_EQ(cv::countNonZero(~last_.uncertain & scene.Truth(1)), 0);
+  Step(21);
+  EXPECT_EQ(Count("born"), 1);
+}
+
 TEST_F(MovingObjectsTest, AStandingChairUnderNoisyMasksStaysBackground) {
   cv::RNG random(5);
   for (int i = 0; i < 60; ++i) {

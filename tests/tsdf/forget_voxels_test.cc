@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 
@@ -62,6 +63,29 @@ TEST(ForgetVoxels, LeavesThoseOfOtherNodes) {
   EXPECT_GT(forgotten, 300);
   EXPECT_LT(lost, forgotten / 2);
   EXPECT_EQ(PlacesOf(ExtractMesh(volume, 0.1)), kept);
+}
+
+TEST(ForgetAround, LeavesWhatIsFartherAway) {
+  TsdfVolume volume = WallVolume();
+  MeshExtractor extractor;
+  const TriangleMesh before = extractor.Extract(volume, 0.1);
+  const std::vector<Eigen::Vector3f> places = {{0, 0, 1}, {0.2f, 0, 1}};
+  const auto distance = [&](const Eigen::Vector3f& v) {
+    return std::min((v - places[0]).norm(), (v - places[1]).norm());
+  };
+  ForgetAround(places, 0.1, &volume);
+  const std::set<Place> after = PlacesOf(extractor.Extract(volume, 0.1));
+  int gone = 0;
+  for (const Eigen::Vector3f& v : before.vertices) {
+    const bool is_there = after.count({v.x(), v.y(), v.z()}) > 0;
+    gone += !is_there;
+    // A cell needs all of its voxels.
+    EXPECT_FALSE(is_there && distance(v) < 0.1);
+    EXPECT_TRUE(is_there || distance(v) < 0.12);
+  }
+  EXPECT_GT(gone, 300);
+  ForgetAround({}, 0.1, &volume);
+  EXPECT_EQ(PlacesOf(ExtractMesh(volume, 0.1)), after);
 }
 
 TEST(ForgetVoxels, OfNoNodesChangesNothing) {
