@@ -167,10 +167,10 @@ void SplitFusion::TrackCamera(bool given, FrameReport* report) {
   }
   const std::vector<ModelSample> samples = BackgroundInView(report);
   TrackBackground(samples, predictors_.at(0).velocity().inverse(), report);
-  standing_.Detect(std::move(detected_standing_), frame_.index,
+  standing_.Detect(std::move(detected_standing_),
                    options_.split.max_missed_frames, options_.render_stride,
-                   camera_, MeanRigidMotion(surfaces_.at(0)->graph()));
-  while (SetMoversApart(samples, report)) {
+                   live_, MeanRigidMotion(surfaces_.at(0)->graph()));
+  if (SetMoversApart(samples, report)) {
     TrackBackground(samples, Rigid3d::Identity(), report);
   }
 }
@@ -180,14 +180,14 @@ void SplitFusion::TrackBackground(const std::vector<ModelSample>& samples,
   Surface& background = *surfaces_.at(0);
   SurfaceReport surface;
   surface.id = 0;
-  const Rigid3d predicted = MeanRigidMotion(background.graph());
+  const Rigid3d before = MeanRigidMotion(background.graph());
   background_state_ =
       TrackSurface(samples, still, /*goes_on=*/true, &background, &surface)
           ? TrackState::kTracked
           : TrackState::kLost;
   // A camera motion moves every surface.
   const Rigid3d correction =
-      MeanRigidMotion(background.graph()) * predicted.inverse();
+      MeanRigidMotion(background.graph()) * before.inverse();
   for (const auto& [id, object] : surfaces_) {
     if (id != 0) ApplyRigidMotion(correction, object->mutable_graph());
   }
@@ -198,12 +198,24 @@ bool SplitFusion::SetMoversApart(const std::vector<ModelSample>& samples,
                                  FrameReport* report) {
   Surface& background = *surfaces_.at(0);
   if (options_.own_motion_gain == 0 || !background.is_ray_cast() ||
-      background_state_ != TrackState::kTracked) {
+      background_state_ != TrackState::kTracked || standing_.empty()) {
     return false;
   }
   const Stopwatch stopwatch;
+  // What moves may have taken the camera along.
+  LiveView rest = live_;
+  rest.uncertain = live_.uncertain | standing_.Mask(live_.labels.size());
+  SurfaceContext known(frame_, background, background, /*goes_on=*/true);
+  known.SetRendered(rendering_, background_map_);
+  DeformationGraph apart = background.graph();
+  SurfaceReport apart_report;
+  if (!tracker_.Track(samples, /*tracks=*/{}, rest, /*surface=*/0,
+                      /*still=*/Rigid3d::Identity(), &apart, &apart_report,
+                      known.view())) {
+    return false;
+  }
   const std::vector<StandingObjects::Moving> moving = standing_.TakeMoving(
-      samples, live_, background.graph(), tracker_,
+      samples, live_, apart, tracker_,
       options_.tracker.grazing_angle * M_PI / 180, options_.own_motion_gain);
   for (const auto& [object, motion] : moving) {
     background.Forget(motion.points);

@@ -109,8 +109,9 @@ class SplitFusion {
   /// TrackSurface() does, and all other surfaces with it.
   void TrackBackground(const std::vector<ModelSample>& samples,
                        const Rigid3d& still, FrameReport* report);
-  /// Sets standing objects apart that move on their own: the background
-  /// forgets them, and their pixels are no part of it. Whether there are any.
+  /// Sets standing objects apart that move on their own, as the camera sees
+  /// it that is tracked without any of them: the background forgets them, and
+  /// their pixels are no part of it. Whether there are any.
   bool SetMoversApart(const std::vector<ModelSample>& samples,
                       FrameReport* report);
   /// The pose of the camera, `given` or tracked, apart from such objects.

@@ -19,13 +19,20 @@ class StandingObjects {
     OwnMotion motion;       ///< From where it was mapped.
   };
 
-  /// Takes in those detected in frame `frame`. One of frames before that none
-  /// of them covers by half stays where it was mapped without a detection, for
-  /// at most `max_missed` frames: detectors miss things just as they begin to
-  /// move. `stride`: model maps hold every so many pixels.
-  void Detect(std::vector<StandingObject> detected, int frame, int max_missed,
-              int stride, const PinholeCamera& camera,
-              const Rigid3d& camera_from_canonical);
+  /// Takes in those detected in a frame, with the labels of its surfaces. One
+  /// of frames before, hidden parts included, that shares half of its pixels
+  /// with none of them stays
+  /// where it was mapped without a detection, for at most `max_missed` frames
+  /// in which it is in view: detectors miss things just as they begin to move.
+  /// `stride`: model maps hold every so many pixels.
+  void Detect(std::vector<StandingObject> detected, int max_missed, int stride,
+              const LiveView& live, const Rigid3d& camera_from_canonical);
+
+  /// Whether there are none.
+  bool empty() const { return mapped_.empty(); }
+
+  /// Pixels of all of them, of this size, 255.
+  cv::Mat_<uchar> Mask(cv::Size size) const;
 
   /// Takes those out that FindOwnMotion() finds a gain of at least `min_gain`
   /// for, which has the meaning of the other arguments.
@@ -44,19 +51,19 @@ class StandingObjects {
  private:
   struct Mapped {
     StandingObject object;
-    int frame = 0;  // Of its last detection.
-    // What was mapped within its mask then, canonical frame of the background,
-    // metres.
+    int missed = 0;  // Frames in view since its last detection.
+    // What was mapped within its mask then, and what was hidden and had been
+    // mapped before: canonical frame of the background, metres.
     std::vector<Eigen::Vector3f> points;
+    bool is_new = false;  // Of this frame: the points in view are not there.
 
     template <typename Archive>
     void Serialize(Archive* archive) {
-      (*archive)(object, frame, points);
+      (*archive)(object, missed, points);
     }
   };
 
   std::vector<Mapped> mapped_;
-  int frame_ = 0;
 };
 
 }  // namespace splitfusion

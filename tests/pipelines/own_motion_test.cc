@@ -76,16 +76,18 @@ class StandingObjectsTest : public OwnMotionTest {
     std::vector<StandingObject> detections;
     if (detected) detections.push_back({mask_, "chair", 0.9, {}});
     const Rigid3d still = Rigid3d::Identity();
-    objects_.Detect(detections, frame_, /*max_missed=*/3, /*stride=*/2,
-                    Camera(), still);
+    LiveView live = View(Scene(place, ++frame_));
+    if (hidden_) live.labels.setTo(1, mask_);
+    objects_.Detect(detections, /*max_missed=*/3, /*stride=*/2, live, still);
     return objects_
-        .TakeMoving(mapped_, View(Scene(place, ++frame_)),
-                    MakeRigidGraph(still), MakeTracker(), kGrazing,
+        .TakeMoving(mapped_, live, MakeRigidGraph(still), MakeTracker(),
+                    kGrazing,
                     /*min_gain=*/0.5)
         .size();
   }
   const Eigen::Vector3d moved_ = kPlace - Eigen::Vector3d(0, 0, 0.015);
   StandingObjects objects_;
+  bool hidden_ = false;  // By another surface.
   int frame_ = 0;
 };
 
@@ -106,6 +108,31 @@ TEST_F(StandingObjectsTest, AreForgottenWithoutDetections) {
   EXPECT_EQ(CountMoving(true, kPlace), 0u);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(CountMoving(false, kPlace), 0u);
   EXPECT_EQ(CountMoving(false, moved_), 0u);
+}
+
+TEST_F(StandingObjectsTest, AreRememberedWhileTheyAreHidden) {
+  EXPECT_EQ(CountMoving(true, kPlace), 0u);
+  hidden_ = true;
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(CountMoving(false, kPlace), 0u);
+  hidden_ = false;
+  EXPECT_EQ(CountMoving(false, moved_), 1u);
+}
+
+TEST_F(StandingObjectsTest, AreForgottenWholeWherePartsAreHidden) {
+  EXPECT_EQ(CountMoving(true, kPlace), 0u);
+  const std::size_t points = SamplesWithin(mask_, mapped_).size();
+  LiveView live = View(Scene(moved_, 9));
+  const cv::Rect left(0, 0, Camera().width / 2, Camera().height);
+  live.labels(left).setTo(1);
+  const Rigid3d still = Rigid3d::Identity();
+  objects_.Detect({{mask_ & (live.labels == 0), "chair", 0.9, {}}},
+                  /*max_missed=*/3, /*stride=*/2, live, still);
+  const std::vector<StandingObjects::Moving> moving =
+      objects_.TakeMoving(mapped_, live, MakeRigidGraph(still), MakeTracker(),
+                          kGrazing, /*min_gain=*/0.5);
+  ASSERT_EQ(moving.size(), 1u);
+  EXPECT_GT(moving[0].motion.points.size(), 0.95 * points);
+  EXPECT_TRUE(objects_.empty());
 }
 
 }  // namespace
