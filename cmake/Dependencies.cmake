@@ -40,7 +40,8 @@ function(splitfusion_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC Eigen3::Eigen Ceres::ceres opencv_core opencv_imgproc
            opencv_imgcodecs TBB::tbb nlohmann_json::nlohmann_json
-    PRIVATE opencv_dnn opencv_video OpenVDB::openvdb pcl_kdtree cholmod
+    PRIVATE opencv_dnn opencv_features2d opencv_video OpenVDB::openvdb
+            pcl_kdtree pcl_sample_consensus cholmod
             SQLite::SQLite3 ${XXHASH_LIBRARY} ${HDF5_LIBRARY})
   target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS}
                              ${CHOLMOD_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR}

@@ -22,8 +22,8 @@ set(BUILD_SHARED_LIBS "${splitfusion_shared}")
 
 find_dependency(Eigen3 3.4 NO_MODULE)
 find_dependency(Ceres 2.1 COMPONENTS SuiteSparse)
-find_dependency(OpenCV 4.5 COMPONENTS core imgproc imgcodecs video dnn)
-find_dependency(PCL 1.12 COMPONENTS common kdtree)
+find_dependency(OpenCV 4.5 COMPONENTS core imgproc imgcodecs video dnn features2d)
+find_dependency(PCL 1.12 COMPONENTS common kdtree sample_consensus)
 find_dependency(nlohmann_json 3.11)
 find_dependency(SQLite3 3)
 

@@ -64,6 +64,7 @@ void PipelineOptions::List(OptionList* list) {
   list->Part("object_", &object);
   list->Part("", &tracker);
   list->Part("", &point_tracks);
+  list->Part("", &match);
   list->Part("", &solver);
   list->Part("", &split);
   list->Part("ray_", &ray_cast);

@@ -7,6 +7,7 @@
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/ray_caster.h"
 #include "splitfusion/lib/split/split_options.h"
+#include "splitfusion/lib/tracking/frame_matcher.h"
 #include "splitfusion/lib/tracking/point_tracks.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
@@ -29,6 +30,8 @@ struct PipelineOptions {
   TrackerOptions tracker;
   /// Points that are followed from image to image.
   PointTrackOptions point_tracks;
+  /// Matches between two frames, for where parts start.
+  MatchOptions match;
   /// Minimiser.
   SolverOptions solver;
   /// Ray casting of the background.

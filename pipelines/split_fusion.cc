@@ -25,6 +25,7 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
       segmenter_(std::move(segmenter)),
       splitter_(camera, labels, options.split),
       point_tracks_(options.point_tracks),
+      matcher_(options.match),
       tracker_(options.tracker, options.solver,
                SurfaceEnergies::Parse(options.terms, registries.terms),
                registries.associations, registries.solvers) {
@@ -56,6 +57,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   }
   AddNewSurfaces(frame, &report);
   Record(frame, &report);
+  if (options_.tracker.part_start.parts.count > 0) matcher_.Keep(live_);
   report.total_seconds =
       report.read_seconds + report.segment_seconds + stopwatch.Seconds();
   return report;
@@ -130,19 +132,37 @@ bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
                                 options_.tracker.non_rigid_distance);
   }
   report->track_points = static_cast<int>(points.size());
-  report->associate_seconds += stopwatch.Seconds();
   SurfaceContext known(frame_, *surface, *surfaces_.at(0), goes_on);
   known.SetRendered(rendering_, background_map_);
   known.PrepareTerms(tracker_.energies(), live_, points, &term_states_.at(id));
+  const std::vector<PointMotion> motions =
+      goes_on ? MatchPoints(*surface) : std::vector<PointMotion>();
+  report->associate_seconds += stopwatch.Restart();
   const bool tracked =
       tracker_.Track(samples, points, live_, static_cast<std::uint16_t>(id),
-                     still, graph, report, known.view());
+                     still, graph, report, known.view(), motions);
   stopwatch.Restart();
   if (tracked && followed) {
     point_tracks_.Begin(id, samples, WarpField(*graph), live_);
   }
   report->associate_seconds += stopwatch.Seconds();
   return tracked;
+}
+
+std::vector<PointMotion> SplitFusion::MatchPoints(
+    const Surface& surface) const {
+  std::vector<PointMotion> motions;
+  if (options_.tracker.part_start.parts.count == 0 || surface.id() == 0 ||
+      surface.graph().rigid()) {
+    return motions;
+  }
+  motions =
+      matcher_.Match(surface.id(), live_, point_tracks_.FlowOf(surface.id()));
+  const Rigid3f still =
+      (WorldFromCamera().inverse() * trajectory_.back().world_from_camera)
+          .cast<float>();
+  for (PointMotion& motion : motions) motion.from = still * motion.from;
+  return motions;
 }
 
 std::vector<ModelSample> SplitFusion::BackgroundInView(

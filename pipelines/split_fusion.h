@@ -103,6 +103,9 @@ class SplitFusion {
   bool TrackSurface(const std::vector<ModelSample>& samples,
                     const Rigid3d& still, bool goes_on, Surface* surface,
                     SurfaceReport* report);
+  /// Points of a deforming object that were matched with the frame before, as
+  /// PartStarter takes them.
+  std::vector<PointMotion> MatchPoints(const Surface& surface) const;
   /// What is in view of the background, where it is predicted.
   std::vector<ModelSample> BackgroundInView(FrameReport* report) const;
   /// Moves the background, which comes in at the predicted motion, as
@@ -159,6 +162,7 @@ class SplitFusion {
   std::shared_ptr<Segmenter> segmenter_;
   SurfaceSplitter splitter_;
   PointTracks point_tracks_;
+  FrameMatcher matcher_;
   SurfaceTracker tracker_;
   SurfaceMap surfaces_;
   Trajectory trajectory_;

@@ -36,7 +36,7 @@ void SplitFusion::Serialize(Archive* archive) {
   archive->Section("split fusion");
   ExpectSameCamera(archive, camera_);
   (*archive)(splitter_, trajectory_, live_.labels, predictors_, point_tracks_,
-             world_from_given_, term_states_, standing_);
+             matcher_, world_from_given_, term_states_, standing_);
   SerializeSurfaces(archive);
 }
 

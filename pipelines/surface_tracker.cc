@@ -9,6 +9,7 @@
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/surface_history.h"
 #include "splitfusion/lib/tracking/agreement.h"
+#include "splitfusion/pipelines/part_start.h"
 
 namespace splitfusion {
 namespace {
@@ -101,6 +102,29 @@ bool WasTooLong(const SolverReport& report) {
   return report.iterations.size() > 1 && !report.iterations.back().accepted;
 }
 
+/// Point tracks but for those of parts which are elsewhere than their part
+/// started: flow that is wrong comes back, too.
+std::vector<TrackedPoint> TracksThatAgree(
+    const std::vector<TrackedPoint>& tracks, const PartStart& start,
+    const DeformationGraph& graph, const DepthNoise& noise) {
+  const WarpField warp(graph);
+  std::vector<TrackedPoint> agreeing;
+  for (const TrackedPoint& track : tracks) {
+    const Skinning& skinning = track.model.skinning;
+    float carried = 0;
+    for (int k = 0; k < skinning.count; ++k) {
+      if (start.carried[skinning.nodes[k]]) carried += skinning.weights[k];
+    }
+    const float off =
+        (warp.WarpPoint(skinning, track.model.point) - track.target).norm();
+    if (carried <= 0.5f ||
+        off <= kAgreeingDistance + 2 * noise.Sigma(track.target.z())) {
+      agreeing.push_back(track);
+    }
+  }
+  return agreeing;
+}
+
 int TotalRounds(const std::vector<TrackingStage>& stages) {
   int rounds = 0;
   for (const TrackingStage& stage : stages) rounds += stage.rounds;
@@ -171,6 +195,7 @@ void TrackerOptions::List(OptionList* list) {
       "settled", &settled, Range::AtLeast(0), "",
       "A rigid stage ends when the relative change of the cost is smaller.");
   ListBounds(list);
+  list->Part("", &part_start);
   list->Number("velocity_gain", &velocity_gain, Range::Above(0), "",
                "Tracking starts from constant velocity if its misfit is below "
                "this fraction of that of standing still.");
@@ -222,14 +247,15 @@ bool SurfaceTracker::Track(const std::vector<ModelSample>& samples,
                            const std::vector<TrackedPoint>& tracks,
                            const LiveView& live, std::uint16_t surface,
                            const Rigid3d& still, DeformationGraph* graph,
-                           SurfaceReport* report,
-                           const TermContext& context) const {
+                           SurfaceReport* report, const TermContext& context,
+                           const std::vector<PointMotion>& motions) const {
   const std::unique_ptr<Associator> associator =
       associations_.Make(options_.association, live, surface);
   const Energy& energy = context.surface == nullptr
                              ? energies_.all()
                              : energies_.Of(context.surface->class_name);
-  const Target target{live, surface, *associator, tracks, energy, context};
+  const Target target{live,   surface, *associator, tracks,
+                      energy, context, motions};
   DeformationGraph predicted = *graph;
   DeformationGraph stayed = predicted;
   Rigid3d back = still;
@@ -287,13 +313,42 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
   if (report->reason.empty() && !graph->rigid()) {
     DeformationGraph before = start;
     ApplyRigidMotion(back, &before);
-    TrackNonRigid(samples, target, before.motions, graph, report);
+    const std::vector<TrackedPoint> tracks =
+        StartParts(samples, target, &before, graph, report);
+    const Target started{target.live,   target.surface, target.associator,
+                         tracks,        target.energy,  target.context,
+                         target.motions};
+    TrackNonRigid(samples, started, before.motions, graph, report);
     report->reason = ReasonForLoss(motion, *report);
     if (report->reason.empty() && target.surface != 0) {
       report->reason = ReasonForMisfit(*report);
     }
   }
   return report->reason.empty();
+}
+
+std::vector<TrackedPoint> SurfaceTracker::StartParts(
+    const std::vector<ModelSample>& samples, const Target& target,
+    DeformationGraph* before, DeformationGraph* graph,
+    SurfaceReport* report) const {
+  if (options_.part_start.parts.count == 0) return target.tracks;
+  const Stopwatch stopwatch;
+  const PartStarter::Misfit misfit = [&](const std::vector<ModelSample>& some,
+                                         const DeformationGraph& there) {
+    return Misfit(some, target, there);
+  };
+  const PartStart start =
+      PartStarter(options_.part_start, *solver_)
+          .Start({samples, target.motions, target.live.camera, *before, misfit},
+                 graph);
+  report->started_parts = start.parts;
+  std::vector<TrackedPoint> tracks = target.tracks;
+  if (start.parts > 0) {
+    *before = *graph;
+    tracks = TracksThatAgree(tracks, start, *graph, target.live.camera.noise);
+  }
+  report->associate_seconds += stopwatch.Seconds();
+  return tracks;
 }
 
 void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
@@ -306,8 +361,8 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
   for (TrackedPoint& point : tracks) {
     point.model = WarpedSample(point.model, warp);
   }
-  Target rigid{target.live, target.surface, target.associator,
-               tracks,      target.energy,  target.context};
+  Target rigid{target.live,   target.surface, target.associator, tracks,
+               target.energy, target.context, target.motions};
   rigid.context.surface_graph = graph;
   std::optional<SurfaceHistory> history;
   if (target.context.history != nullptr) {

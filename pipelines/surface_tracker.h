@@ -12,6 +12,7 @@
 #include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/report/frame_report.h"
+#include "splitfusion/pipelines/part_start_options.h"
 
 namespace splitfusion {
 
@@ -59,6 +60,8 @@ struct TrackerOptions {
   int min_samples = 1500;
   /// The trust region of a round starts from that of the round before.
   bool keep_radius = true;
+  /// Where parts of a deforming surface start.
+  PartStartOptions part_start;
 
   /// The stages in which all nodes share one motion, coarse to fine.
   std::vector<TrackingStage> RigidStages() const;
@@ -96,12 +99,14 @@ class SurfaceTracker {
   /// better, so that a motion which the data do not determine does not carry
   /// itself on. A frame that fails leaves the graph where tracking started; the
   /// report says why. Returns whether it succeeded. `context`: for terms that
-  /// ask for it; its class name decides which energy it is.
+  /// ask for it; its class name decides which energy it is. `motions`: of its
+  /// points, see PartStarter.
   bool Track(const std::vector<ModelSample>& samples,
              const std::vector<TrackedPoint>& tracks, const LiveView& live,
              std::uint16_t surface, const Rigid3d& still,
              DeformationGraph* graph, SurfaceReport* report,
-             const TermContext& context = {}) const;
+             const TermContext& context = {},
+             const std::vector<PointMotion>& motions = {}) const;
 
   /// What is minimised.
   const SurfaceEnergies& energies() const { return energies_; }
@@ -115,6 +120,7 @@ class SurfaceTracker {
     const std::vector<TrackedPoint>& tracks;
     const Energy& energy;
     TermContext context;
+    const std::vector<PointMotion>& motions;
   };
 
   double Misfit(const std::vector<ModelSample>& samples, const Target& target,
@@ -129,6 +135,13 @@ class SurfaceTracker {
   void TrackRigid(const std::vector<ModelSample>& samples, const Target& target,
                   const Rigid3d& back, DeformationGraph* graph,
                   SurfaceReport* report) const;
+  /// Moves parts that moved far, and `before`, where each node was, with them;
+  /// the point tracks that agree with that.
+  std::vector<TrackedPoint> StartParts(const std::vector<ModelSample>& samples,
+                                       const Target& target,
+                                       DeformationGraph* before,
+                                       DeformationGraph* graph,
+                                       SurfaceReport* report) const;
   void TrackNonRigid(const std::vector<ModelSample>& samples,
                      const Target& target,
                      const std::vector<NodeMotion>& before,

@@ -51,6 +51,7 @@ struct SurfaceReport {
   int nodes = 0;            ///< Of the deformation graph.
   double node_spacing = 0;  ///< Of the graph, metres; 0 if it is rigid.
   int track_points = 0;     ///< Points that were followed into this frame.
+  int started_parts = 0;    ///< Parts that started elsewhere, see PartStarter.
   int refuted_nodes = 0;    ///< Nodes whose parts were forgotten.
   int vertices = 0;         ///< Of the mesh.
   double residual_rms = 0;  ///< Point-to-plane, last round, metres.

@@ -68,6 +68,7 @@ void to_json(Json& json, const SurfaceReport& surface) {
           {"state", ToString(surface.state)},
           {"event", surface.event},
           {"track_points", surface.track_points},
+          {"started_parts", surface.started_parts},
           {"refuted_nodes", surface.refuted_nodes},
           {"reason", surface.reason},
           {"pixels", surface.pixels},

@@ -55,12 +55,18 @@ void PointTracks::Follow(const LiveView& live, const std::set<int>& surfaces) {
   cv::cvtColor(live.color, grey, cv::COLOR_BGR2GRAY);
   cv::Mat_<cv::Vec2f> flow(grey.size(), cv::Vec2f(0, 0));
   std::map<int, std::vector<PointTrack>> followed;
+  flows_.clear();
   for (const int surface : surfaces) {
     std::vector<PointTrack>& kept = followed[surface];
     const auto known = tracks_.find(surface);
     if (known == tracks_.end() || known->second.empty()) continue;
-    const DenseFlow moved(grey_, grey,
-                          BoxOf(known->second, surface, live.labels), flow_);
+    const DenseFlow& moved =
+        flows_
+            .emplace(
+                surface,
+                DenseFlow(grey_, grey,
+                          BoxOf(known->second, surface, live.labels), flow_))
+            .first->second;
     moved.Write(&flow);
     for (const PointTrack& track : known->second) {
       const auto place =

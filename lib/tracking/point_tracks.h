@@ -11,6 +11,7 @@
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/frame/live_view.h"
+#include "splitfusion/lib/tracking/dense_flow.h"
 
 namespace splitfusion {
 
@@ -83,7 +84,14 @@ class PointTracks {
     return tracks_.at(surface);
   }
 
-  /// Saves or restores it, see lib/base/archive.h.
+  /// The flow of a surface from the frame before, as Follow() found it; null if
+  /// it was not followed, or had no tracks.
+  const DenseFlow* FlowOf(int surface) const {
+    const auto found = flows_.find(surface);
+    return found == flows_.end() ? nullptr : &found->second;
+  }
+
+  /// Saves or restores it between two frames, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
     (*archive)(tracks_, grey_, flow_);
@@ -94,6 +102,7 @@ class PointTracks {
   std::map<int, std::vector<PointTrack>> tracks_;  // By surface.
   cv::Mat_<std::uint8_t> grey_;  // Of the last frame; empty before the first.
   cv::Mat_<cv::Vec2f> flow_;     // To it; 0 where no surface was followed.
+  std::map<int, DenseFlow> flows_;  // To it, by surface.
 };
 
 }  // namespace splitfusion
