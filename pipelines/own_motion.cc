@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <optional>
 
+#include "splitfusion/lib/energy/trial_surface.h"
 #include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
 namespace {
-
-/// Label of the part's pixels meanwhile.
-constexpr auto kPart = std::numeric_limits<std::uint16_t>::max();
 
 /// The live frame in which the background's pixels of `mask` are those of the
 /// part, certain ones.
@@ -20,7 +16,7 @@ LiveView WithPart(const LiveView& live, const cv::Mat_<uchar>& mask) {
   LiveView view = live;
   const cv::Mat_<uchar> pixels = mask & (live.labels == 0);
   view.labels = live.labels.clone();
-  view.labels.setTo(kPart, pixels);
+  view.labels.setTo(kTrialSurface, pixels);
   view.uncertain = live.uncertain.clone();
   view.uncertain.setTo(0, pixels);
   return view;
@@ -47,7 +43,7 @@ class Misfit {
     const int u = pixel->x(), v = pixel->y();
     const int label = live_.labels(v, u);
     if (!(live_.depth(v, u) > 0) || live_.edges(v, u) != 0 ||
-        (label != 0 && label != kPart) ||
+        (label != 0 && label != kTrialSurface) ||
         -normal.dot(point) < min_cosine_ * point.norm()) {
       return std::nullopt;
     }
@@ -79,13 +75,14 @@ std::vector<ModelSample> SamplesWithin(
 OwnMotion FindOwnMotion(const std::vector<ModelSample>& part,
                         const cv::Mat_<uchar>& mask, const LiveView& live,
                         const DeformationGraph& background,
-                        const SurfaceTracker& tracker, double grazing_angle) {
+                        const SurfaceTracker& tracker, double grazing_angle,
+                        const TermContext& context) {
   const LiveView view = WithPart(live, mask);
   DeformationGraph graph = background;
   SurfaceReport report;
   OwnMotion result;
-  if (!tracker.Track(part, /*tracks=*/{}, view, kPart,
-                     /*still=*/Rigid3d::Identity(), &graph, &report)) {
+  if (!tracker.Track(part, /*tracks=*/{}, view, kTrialSurface,
+                     /*still=*/Rigid3d::Identity(), &graph, &report, context)) {
     return result;
   }
   const Rigid3d still = MeanRigidMotion(background);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/energy/trial_surface.h"
 #include "splitfusion/lib/geometry/nearest_point.h"
 #include "splitfusion/lib/tracking/agreement.h"
 
@@ -214,8 +215,10 @@ PartStart PartStarter::Start(const Surface& surface,
     pairs.push_back(
         PairOf(samples[i], target, labels[i] == kUnknown ? options_.hold : 1));
   }
+  SurfaceProblem problem{energy_, pairs, surface.camera};
+  problem.surface = kTrialSurface;
   for (int step = 0; step < kSteps; ++step) {
-    solver_.Minimize({energy_, pairs, surface.camera}, &started);
+    solver_.Minimize(problem, &started);
   }
   if (surface.misfit(samples, started) >= surface.misfit(samples, *graph)) {
     return {};

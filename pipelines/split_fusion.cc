@@ -9,6 +9,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/energy/trial_surface.h"
 #include "splitfusion/lib/tracking/translation_search.h"
 #include "splitfusion/lib/visibility/exposure.h"
 #include "splitfusion/pipelines/surface_context.h"
@@ -224,19 +225,31 @@ bool SplitFusion::SetMoversApart(const std::vector<ModelSample>& samples,
   const Stopwatch stopwatch;
   // What moves may have taken the camera along.
   LiveView rest = live_;
+  rest.labels = live_.labels.clone();
+  rest.labels.setTo(kTrialSurface, live_.labels == 0);
   rest.uncertain = live_.uncertain | standing_.Mask(live_.labels.size());
   SurfaceContext known(frame_, background, background, /*goes_on=*/true);
   known.SetRendered(rendering_, background_map_);
+  // What terms keep of the background is not to know of these tries.
+  TermStates states;
+  known.PrepareTerms(tracker_.energies(), rest, /*tracks=*/{}, &states);
   DeformationGraph apart = background.graph();
   SurfaceReport apart_report;
-  if (!tracker_.Track(samples, /*tracks=*/{}, rest, /*surface=*/0,
+  if (!tracker_.Track(samples, /*tracks=*/{}, rest, kTrialSurface,
                       /*still=*/Rigid3d::Identity(), &apart, &apart_report,
                       known.view())) {
     return false;
   }
-  const std::vector<StandingObjects::Moving> moving = standing_.TakeMoving(
-      samples, live_, apart, tracker_,
-      options_.tracker.grazing_angle * M_PI / 180, options_.own_motion_gain);
+  // A part has no past of its own, and the energy of things that may move.
+  SurfaceFacts part = *known.view().surface;
+  part.class_name.clear();
+  TermContext context = known.view();
+  context.surface = &part;
+  context.history = nullptr;
+  const std::vector<StandingObjects::Moving> moving =
+      standing_.TakeMoving(samples, live_, apart, tracker_,
+                           options_.tracker.grazing_angle * M_PI / 180,
+                           options_.own_motion_gain, context);
   for (const auto& [object, motion] : moving) {
     background.Forget(motion.points);
     live_.uncertain.setTo(255, object.mask & (live_.labels == 0));

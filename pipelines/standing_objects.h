@@ -20,8 +20,7 @@ class StandingObjects {
   };
 
   /// Takes in those detected in a frame, with the labels of its surfaces. One
-  /// of frames before, hidden parts included, that shares half of its pixels
-  /// with none of them stays
+  /// of frames before that shares half of its pixels with none of them stays
   /// where it was mapped without a detection, for at most `max_missed` frames
   /// in which it is in view: detectors miss things just as they begin to move.
   /// `stride`: model maps hold every so many pixels.
@@ -40,7 +39,8 @@ class StandingObjects {
                                  const LiveView& live,
                                  const DeformationGraph& background,
                                  const SurfaceTracker& tracker,
-                                 double grazing_angle, double min_gain);
+                                 double grazing_angle, double min_gain,
+                                 const TermContext& context = {});
 
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
@@ -52,8 +52,8 @@ class StandingObjects {
   struct Mapped {
     StandingObject object;
     int missed = 0;  // Frames in view since its last detection.
-    // What was mapped within its mask then, and what was hidden and had been
-    // mapped before: canonical frame of the background, metres.
+    // What was mapped within its mask then: canonical frame of the background,
+    // metres.
     std::vector<Eigen::Vector3f> points;
     bool is_new = false;  // Of this frame: the points in view are not there.
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/energy/trial_surface.h"
 
 namespace splitfusion {
 
@@ -18,7 +19,9 @@ class ProblemRecorder::Watched : public Solver {
 
   SolverReport Minimize(const SurfaceProblem& problem,
                         DeformationGraph* graph) const override {
-    if (!recorder_->records_) return solver_->Minimize(problem, graph);
+    if (!recorder_->records_ || problem.surface == kTrialSurface) {
+      return solver_->Minimize(problem, graph);
+    }
     std::optional<FrozenProblem> frozen;
     try {
       frozen = Freeze(problem, *graph);

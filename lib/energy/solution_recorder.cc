@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "splitfusion/lib/energy/trial_surface.h"
+
 namespace splitfusion {
 
 SurfaceProblem SolvedProblem::View() const {
@@ -20,7 +22,8 @@ class SolutionRecorder::Watched : public Solver {
   SolverReport Minimize(const SurfaceProblem& problem,
                         DeformationGraph* graph) const override {
     SolverReport report = solver_->Minimize(problem, graph);
-    if (recorder_->records_ && report.usable) {
+    if (recorder_->records_ && report.usable &&
+        problem.surface != kTrialSurface) {
       recorder_->Keep(problem, report, *graph);
     }
     return report;

@@ -4,6 +4,7 @@
 
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/energy/trial_surface.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "support/sample_correspondences.h"
 #include "support/sample_graphs.h"
@@ -68,6 +69,7 @@ TEST_F(ProblemRecorderTest, KeepsTheLastSolveOfEverySurface) {
   const DeformationGraph second = graph;
   const SolverReport report = Solve(1, &graph);
   Solve(4, &other);
+  Solve(kTrialSurface, &other);  // What is only compared is kept by nobody.
   const std::vector<FrozenProblem> problems = Recorded();
   ASSERT_EQ(problems.size(), 2u);
   EXPECT_EQ(problems[0].frame, 10);

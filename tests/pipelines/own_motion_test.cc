@@ -118,22 +118,5 @@ TEST_F(StandingObjectsTest, AreRememberedWhileTheyAreHidden) {
   EXPECT_EQ(CountMoving(false, moved_), 1u);
 }
 
-TEST_F(StandingObjectsTest, AreForgottenWholeWherePartsAreHidden) {
-  EXPECT_EQ(CountMoving(true, kPlace), 0u);
-  const std::size_t points = SamplesWithin(mask_, mapped_).size();
-  LiveView live = View(Scene(moved_, 9));
-  const cv::Rect left(0, 0, Camera().width / 2, Camera().height);
-  live.labels(left).setTo(1);
-  const Rigid3d still = Rigid3d::Identity();
-  objects_.Detect({{mask_ & (live.labels == 0), "chair", 0.9, {}}},
-                  /*max_missed=*/3, /*stride=*/2, live, still);
-  const std::vector<StandingObjects::Moving> moving =
-      objects_.TakeMoving(mapped_, live, MakeRigidGraph(still), MakeTracker(),
-                          kGrazing, /*min_gain=*/0.5);
-  ASSERT_EQ(moving.size(), 1u);
-  EXPECT_GT(moving[0].motion.points.size(), 0.95 * points);
-  EXPECT_TRUE(objects_.empty());
-}
-
 }  // namespace
 }  // namespace splitfusion
