@@ -75,14 +75,13 @@ std::vector<ModelSample> SamplesWithin(
 OwnMotion FindOwnMotion(const std::vector<ModelSample>& part,
                         const cv::Mat_<uchar>& mask, const LiveView& live,
                         const DeformationGraph& background,
-                        const SurfaceTracker& tracker, double grazing_angle,
-                        const TermContext& context) {
+                        const SurfaceTracker& tracker, double grazing_angle) {
   const LiveView view = WithPart(live, mask);
   DeformationGraph graph = background;
   SurfaceReport report;
   OwnMotion result;
   if (!tracker.Track(part, /*tracks=*/{}, view, kTrialSurface,
-                     /*still=*/Rigid3d::Identity(), &graph, &report, context)) {
+                     /*still=*/Rigid3d::Identity(), &graph, &report)) {
     return result;
   }
   const Rigid3d still = MeanRigidMotion(background);

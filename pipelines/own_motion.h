@@ -30,13 +30,11 @@ std::vector<ModelSample> SamplesWithin(const cv::Mat_<uchar>& mask,
 /// Tracks a part of the background on its own, from where it was mapped, in its
 /// pixels `mask` (HxW, 255). `part`: its model points; `background`: the motion
 /// of the background in this frame; `live`: with the labels of other surfaces,
-/// whose pixels tell nothing; `grazing_angle`: radians, as of AssociationGates;
-/// `context`: as of SurfaceTracker::Track().
+/// whose pixels tell nothing; `grazing_angle`: radians, as of AssociationGates.
 OwnMotion FindOwnMotion(const std::vector<ModelSample>& part,
                         const cv::Mat_<uchar>& mask, const LiveView& live,
                         const DeformationGraph& background,
-                        const SurfaceTracker& tracker, double grazing_angle,
-                        const TermContext& context = {});
+                        const SurfaceTracker& tracker, double grazing_angle);
 
 }  // namespace splitfusion
 

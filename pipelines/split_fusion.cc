@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/trial_surface.h"
@@ -228,28 +229,23 @@ bool SplitFusion::SetMoversApart(const std::vector<ModelSample>& samples,
   rest.labels = live_.labels.clone();
   rest.labels.setTo(kTrialSurface, live_.labels == 0);
   rest.uncertain = live_.uncertain | standing_.Mask(live_.labels.size());
-  SurfaceContext known(frame_, background, background, /*goes_on=*/true);
-  known.SetRendered(rendering_, background_map_);
-  // What terms keep of the background is not to know of these tries.
-  TermStates states;
-  known.PrepareTerms(tracker_.energies(), rest, /*tracks=*/{}, &states);
+  // By the energy of the toolkit: terms of others need not bear such tries.
+  TrackerOptions how = options_.tracker;
+  how.association = TrackerOptions().association;
+  const SurfaceTracker tracker(
+      how, SolverOptions(),
+      SurfaceEnergies::Parse(PipelineOptions().terms, BuiltinTerms()));
+  const SurfaceContext known(frame_, background, background, /*goes_on=*/true);
   DeformationGraph apart = background.graph();
   SurfaceReport apart_report;
-  if (!tracker_.Track(samples, /*tracks=*/{}, rest, kTrialSurface,
-                      /*still=*/Rigid3d::Identity(), &apart, &apart_report,
-                      known.view())) {
+  if (!tracker.Track(samples, /*tracks=*/{}, rest, kTrialSurface,
+                     /*still=*/Rigid3d::Identity(), &apart, &apart_report,
+                     known.view())) {
     return false;
   }
-  // A part has no past of its own, and the energy of things that may move.
-  SurfaceFacts part = *known.view().surface;
-  part.class_name.clear();
-  TermContext context = known.view();
-  context.surface = &part;
-  context.history = nullptr;
-  const std::vector<StandingObjects::Moving> moving =
-      standing_.TakeMoving(samples, live_, apart, tracker_,
-                           options_.tracker.grazing_angle * M_PI / 180,
-                           options_.own_motion_gain, context);
+  const std::vector<StandingObjects::Moving> moving = standing_.TakeMoving(
+      samples, live_, apart, tracker,
+      options_.tracker.grazing_angle * M_PI / 180, options_.own_motion_gain);
   for (const auto& [object, motion] : moving) {
     background.Forget(motion.points);
     live_.uncertain.setTo(255, object.mask & (live_.labels == 0));

@@ -73,14 +73,14 @@ cv::Mat_<uchar> StandingObjects::Mask(cv::Size size) const {
 std::vector<StandingObjects::Moving> StandingObjects::TakeMoving(
     const std::vector<ModelSample>& samples, const LiveView& live,
     const DeformationGraph& background, const SurfaceTracker& tracker,
-    double grazing_angle, double min_gain, const TermContext& context) {
+    double grazing_angle, double min_gain) {
   std::vector<Moving> moving;
   std::vector<Mapped> standing;
   for (Mapped& mapped : mapped_) {
     const std::vector<ModelSample> part =
         SamplesWithin(mapped.object.mask, samples);
     OwnMotion motion = FindOwnMotion(part, mapped.object.mask, live, background,
-                                     tracker, grazing_angle, context);
+                                     tracker, grazing_angle);
     if (motion.gain >= min_gain) {
       motion.points.insert(motion.points.end(), mapped.points.begin(),
                            mapped.points.end());

@@ -39,8 +39,7 @@ class StandingObjects {
                                  const LiveView& live,
                                  const DeformationGraph& background,
                                  const SurfaceTracker& tracker,
-                                 double grazing_angle, double min_gain,
-                                 const TermContext& context = {});
+                                 double grazing_angle, double min_gain);
 
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
