@@ -6,6 +6,7 @@
 
 #include "splitfusion/lib/energy/trial_surface.h"
 #include "splitfusion/lib/geometry/depth_comparison.h"
+#include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
 namespace {

@@ -6,9 +6,12 @@
 #include <vector>
 
 #include "splitfusion/lib/frame/live_view.h"
-#include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
+
+class SurfaceTracker;
+struct DeformationGraph;
+struct ModelSample;
 
 /// A part of the background under a rigid motion of its own.
 struct OwnMotion {

@@ -4,6 +4,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "splitfusion/pipelines/surface_tracker.h"
+
 namespace splitfusion {
 namespace {
 
