@@ -16,9 +16,8 @@
 DEFINE_string(preset, "splitfusion", "Method, by name; see docs/presets.md.");
 DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
 DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
-DEFINE_string(
-    color_camera, "auto",
-    "File of the camera of colour that is not registered, auto, none.");
+DEFINE_string(color_camera, "auto",
+              "Camera of unregistered colour: FILE, auto, none.");
 DEFINE_string(trajectory, "", "TUM text of known camera poses.");
 DEFINE_bool(skip_bad_frames, false,
             "Leave out frames whose images are missing or broken.");
