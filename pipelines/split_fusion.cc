@@ -228,7 +228,9 @@ bool SplitFusion::SetMoversApart(const std::vector<ModelSample>& samples,
   LiveView rest = live_;
   rest.labels = live_.labels.clone();
   rest.labels.setTo(kTrialSurface, live_.labels == 0);
-  rest.uncertain = live_.uncertain | standing_.Mask(live_.labels.size());
+  // A new image: assigned to, the shared one would be written.
+  rest.uncertain = live_.uncertain.clone();
+  rest.uncertain.setTo(255, standing_.Mask(live_.labels.size()));
   // By the energy of the toolkit: terms of others need not bear such tries.
   TrackerOptions how = options_.tracker;
   how.association = TrackerOptions().association;

@@ -108,13 +108,19 @@ TEST(MovingObject, IsForgottenByTheBackgroundAsItBeginsToMove) {
 
 TEST(MovingObject, AChairThatNobodyMovesStaysBackground) {
   SyntheticRun run(EmptyRoom(/*camera_motion=*/1));
+  PipelineOptions options;
+  options.own_motion_gain = 0;
+  SyntheticRun unwatched(EmptyRoom(/*camera_motion=*/1), options);
   for (int i = 0; i < kFrames; ++i) {
     for (const SplitDecision& decision : run.Next().decisions) {
       EXPECT_EQ(decision.class_name, "chair");
       EXPECT_EQ(decision.action, "ignored") << i;
     }
+    unwatched.Next();
   }
   EXPECT_EQ(run.fusion().surfaces().size(), 1u);
+  // What stands is tracked and mapped as if nobody had looked.
+  EXPECT_TRUE(SameResults(run.fusion(), unwatched.fusion()));
 }
 
 }  // namespace
