@@ -86,16 +86,13 @@ OwnMotion FindOwnMotion(const std::vector<ModelSample>& part,
     return result;
   }
   const Rigid3d still = MeanRigidMotion(background);
-  const Rigid3d moved = MeanRigidMotion(graph);
+  const Rigid3d& moved = result.camera_from_canonical = MeanRigidMotion(graph);
   const Misfit misfit(view, grazing_angle);
   double sum = 0;
   int compared = 0;
   for (const ModelSample& sample : part) {
     const std::optional<double> before = misfit.Of(sample, still);
     const std::optional<double> after = misfit.Of(sample, moved);
-    if (after && *after < kNoiseSigmas * kNoiseSigmas) {
-      result.points.push_back(sample.point);
-    }
     if (!before || !after) continue;
     sum += *before - *after;
     ++compared;

@@ -1,11 +1,11 @@
 #ifndef SPLITFUSION_PIPELINES_OWN_MOTION_H_
 #define SPLITFUSION_PIPELINES_OWN_MOTION_H_
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "splitfusion/lib/frame/live_view.h"
+#include "splitfusion/lib/geometry/rigid3.h"
 
 namespace splitfusion {
 
@@ -21,9 +21,8 @@ struct OwnMotion {
   /// of its noise as tracking weighs it. A distance counts three standard
   /// deviations at most. 0 if the part cannot be tracked on its own.
   double gain = 0;
-  /// Model points that fit where the motion takes them, canonical frame,
-  /// metres.
-  std::vector<Eigen::Vector3f> points;
+  /// Where the motion takes what was mapped.
+  Rigid3d camera_from_canonical = Rigid3d::Identity();
 };
 
 /// Those of a rendering whose pixels are in `mask` (HxW, 255).

@@ -7,10 +7,8 @@
 #include <optional>
 #include <set>
 
-#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
-#include "splitfusion/lib/energy/trial_surface.h"
 #include "splitfusion/lib/tracking/translation_search.h"
 #include "splitfusion/lib/visibility/exposure.h"
 #include "splitfusion/pipelines/surface_context.h"
@@ -30,7 +28,8 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
       matcher_(options.match),
       tracker_(options.tracker, options.solver,
                SurfaceEnergies::Parse(options.terms, registries.terms),
-               registries.associations, registries.solvers) {
+               registries.associations, registries.solvers),
+      standing_(options) {
   options_.Check();
   camera_.Check();
 }
@@ -189,9 +188,6 @@ void SplitFusion::TrackCamera(bool given, FrameReport* report) {
   }
   const std::vector<ModelSample> samples = BackgroundInView(report);
   TrackBackground(samples, predictors_.at(0).velocity().inverse(), report);
-  standing_.Detect(std::move(detected_standing_),
-                   options_.split.max_missed_frames, options_.render_stride,
-                   live_, MeanRigidMotion(surfaces_.at(0)->graph()));
   if (SetMoversApart(samples, report)) {
     TrackBackground(samples, Rigid3d::Identity(), report);
   }
@@ -220,36 +216,16 @@ bool SplitFusion::SetMoversApart(const std::vector<ModelSample>& samples,
                                  FrameReport* report) {
   Surface& background = *surfaces_.at(0);
   if (options_.own_motion_gain == 0 || !background.is_ray_cast() ||
-      background_state_ != TrackState::kTracked || standing_.empty()) {
+      background_state_ != TrackState::kTracked) {
     return false;
   }
   const Stopwatch stopwatch;
-  // What moves may have taken the camera along.
-  LiveView rest = live_;
-  rest.labels = live_.labels.clone();
-  rest.labels.setTo(kTrialSurface, live_.labels == 0);
-  // A new image: assigned to, the shared one would be written.
-  rest.uncertain = live_.uncertain.clone();
-  rest.uncertain.setTo(255, standing_.Mask(live_.labels.size()));
-  // By the energy of the toolkit: terms of others need not bear such tries.
-  TrackerOptions how = options_.tracker;
-  how.association = TrackerOptions().association;
-  const SurfaceTracker tracker(
-      how, SolverOptions(),
-      SurfaceEnergies::Parse(PipelineOptions().terms, BuiltinTerms()));
   const SurfaceContext known(frame_, background, background, /*goes_on=*/true);
-  DeformationGraph apart = background.graph();
-  SurfaceReport apart_report;
-  if (!tracker.Track(samples, /*tracks=*/{}, rest, kTrialSurface,
-                     /*still=*/Rigid3d::Identity(), &apart, &apart_report,
-                     known.view())) {
-    return false;
-  }
-  const std::vector<StandingObjects::Moving> moving = standing_.TakeMoving(
-      samples, live_, apart, tracker,
-      options_.tracker.grazing_angle * M_PI / 180, options_.own_motion_gain);
-  for (const auto& [object, motion] : moving) {
-    background.Forget(motion.points);
+  const std::vector<StandingObjects::Moving> moving =
+      standing_.Watch(std::move(detected_standing_), samples, live_,
+                      background.graph(), known.view());
+  for (const auto& [object, points] : moving) {
+    background.Forget(points);
     live_.uncertain.setTo(255, object.mask & (live_.labels == 0));
     splitter_.BelieveMoving(object);
     report->decisions.push_back(

@@ -6,6 +6,8 @@
 
 #include "splitfusion/lib/split/split_result.h"
 #include "splitfusion/pipelines/own_motion.h"
+#include "splitfusion/pipelines/pipeline_options.h"
+#include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
 
@@ -13,33 +15,32 @@ namespace splitfusion {
 /// found to move on their own.
 class StandingObjects {
  public:
-  /// One that moves, and how.
+  /// Watches by the energy of the toolkit, whatever that of `options` is: terms
+  /// of others need not bear tries.
+  explicit StandingObjects(const PipelineOptions& options);
+
+  /// One that moves.
   struct Moving {
     StandingObject object;  ///< Where it is seen in this frame.
-    OwnMotion motion;       ///< From where it was mapped.
+    /// What was mapped of it: canonical frame of the background, metres.
+    std::vector<Eigen::Vector3f> points;
   };
 
-  /// Takes in those detected in a frame, with the labels of its surfaces. One
-  /// of frames before that shares half of its pixels with none of them stays
-  /// where it was mapped without a detection, for at most `max_missed` frames
-  /// in which it is in view: detectors miss things just as they begin to move.
-  /// `stride`: model maps hold every so many pixels.
-  void Detect(std::vector<StandingObject> detected, int max_missed, int stride,
-              const LiveView& live, const Rigid3d& camera_from_canonical);
-
-  /// Whether there are none.
-  bool empty() const { return mapped_.empty(); }
-
-  /// Pixels of all of them, of this size, 255.
-  cv::Mat_<uchar> Mask(cv::Size size) const;
-
-  /// Takes those out that FindOwnMotion() finds a gain of at least `min_gain`
-  /// for, which has the meaning of the other arguments.
-  std::vector<Moving> TakeMoving(const std::vector<ModelSample>& samples,
-                                 const LiveView& live,
-                                 const DeformationGraph& background,
-                                 const SurfaceTracker& tracker,
-                                 double grazing_angle, double min_gain);
+  /// Takes in those detected in a frame, with the labels of its surfaces, and
+  /// takes those out that FindOwnMotion() finds a gain of at least
+  /// `own_motion_gain` for, as the camera sees it that is tracked without any
+  /// of them. One of frames before that shares half of its pixels with none of
+  /// the detected stays where it was mapped without a detection, for at most
+  /// `max_missed_frames` in which it is in view: detectors miss things just as
+  /// they begin to move.
+  ///
+  /// `samples`: the background's model points in view; `background`: as tracked
+  /// in this frame; `context`: of it, as of SurfaceTracker::Track().
+  std::vector<Moving> Watch(std::vector<StandingObject> detected,
+                            const std::vector<ModelSample>& samples,
+                            const LiveView& live,
+                            const DeformationGraph& background,
+                            const TermContext& context);
 
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
@@ -62,6 +63,19 @@ class StandingObjects {
     }
   };
 
+  void Detect(std::vector<StandingObject> detected, const LiveView& live,
+              const Rigid3d& camera_from_canonical);
+  /// Tracks the background without what may move, and take the camera along.
+  bool TrackApart(const std::vector<ModelSample>& samples, const LiveView& live,
+                  const TermContext& context, DeformationGraph* apart) const;
+  /// Of `points`, those that the motion takes onto the thing where it is seen,
+  /// or to where it is not in view: a mask has some of what is beside it.
+  std::vector<Eigen::Vector3f> PointsOfThing(
+      const std::vector<Eigen::Vector3f>& points, const cv::Mat_<uchar>& mask,
+      const LiveView& live, const Rigid3d& camera_from_canonical) const;
+
+  PipelineOptions options_;
+  SurfaceTracker tracker_;
   std::vector<Mapped> mapped_;
 };
 

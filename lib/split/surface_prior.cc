@@ -185,4 +185,20 @@ SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,
   return result;
 }
 
+cv::Mat_<uchar> CutOut(const cv::Mat_<uchar>& mask, const PointMap& points,
+                       const cv::Mat& color, const GraphCutOptions& cut,
+                       const PriorOptions& options) {
+  ComparedDepth unknown;
+  unknown.labels = LabelImage(mask.size(), 0);
+  unknown.agreement =
+      cv::Mat_<uchar>(mask.size(), static_cast<uchar>(DepthState::kUnmeasured));
+  const SurfaceEvidence evidence =
+      GatherEvidence({0, mask, {}, {}}, unknown, cut, options);
+  cv::Mat_<uchar> thing(mask.size(), uchar(0));
+  if (evidence.crop.area() == 0) return thing;
+  CutForeground(points, color, evidence.crop, evidence.evidence, cut)
+      .copyTo(thing(evidence.crop));
+  return thing;
+}
+
 }  // namespace splitfusion

@@ -10,6 +10,7 @@
 namespace splitfusion {
 
 struct GraphCutOptions;
+struct PointMap;
 
 /// Between neighbouring pixels of one surface.
 constexpr DepthTolerance<float> kSmoothDepth = {0.02f};
@@ -67,6 +68,12 @@ SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,
                                const ComparedDepth& compared,
                                const GraphCutOptions& cut,
                                const PriorOptions& options);
+
+/// Pixels (HxW, 255) of a thing that nothing is known of but its detection: its
+/// mask, cut along steps and creases of the depth. `color`: HxW 8UC3.
+cv::Mat_<uchar> CutOut(const cv::Mat_<uchar>& mask, const PointMap& points,
+                       const cv::Mat& color, const GraphCutOptions& cut,
+                       const PriorOptions& options);
 
 /// Pixels predicted as `surface` where the live depth agrees, 255.
 cv::Mat_<uchar> AgreeingPixels(int surface, const LabelImage& predicted_labels,
