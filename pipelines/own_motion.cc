@@ -91,6 +91,8 @@ OwnMotion FindOwnMotion(const std::vector<ModelSample>& part,
   double sum = 0;
   int compared = 0;
   for (const ModelSample& sample : part) {
+    const Eigen::Vector3d point = sample.point.cast<double>();
+    result.way += (moved * point - still * point).norm() / part.size();
     const std::optional<double> before = misfit.Of(sample, still);
     const std::optional<double> after = misfit.Of(sample, moved);
     if (!before || !after) continue;

@@ -23,6 +23,7 @@ struct OwnMotion {
   double gain = 0;
   /// Where the motion takes what was mapped.
   Rigid3d camera_from_canonical = Rigid3d::Identity();
+  double way = 0;  ///< Of the mean model point, metres.
 };
 
 /// Those of a rendering whose pixels are in `mask` (HxW, 255).

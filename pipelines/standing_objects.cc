@@ -7,7 +7,6 @@
 
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/energy/trial_surface.h"
-#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/split/surface_prior.h"
 
 namespace splitfusion {
@@ -18,6 +17,20 @@ bool IsInView(const Eigen::Vector3f& point,
               const Rigid3f& camera_from_canonical, const LiveView& live) {
   const auto pixel = live.camera.PixelOf(camera_from_canonical * point);
   return pixel && live.labels(pixel->y(), pixel->x()) == 0;
+}
+
+/// Z-depths of the model points in view, of every `stride`-th pixel, metres.
+cv::Mat_<float> DepthOf(const std::vector<ModelSample>& samples, int stride,
+                        const Rigid3f& camera_from_canonical,
+                        const PinholeCamera& camera) {
+  const PinholeCamera coarse = camera.Subsampled(stride);
+  cv::Mat_<float> depth(coarse.height, coarse.width, 0.0f);
+  for (const ModelSample& sample : samples) {
+    const Eigen::Vector3f point = camera_from_canonical * sample.point;
+    const auto pixel = coarse.PixelOf(point);
+    if (pixel) depth(pixel->y(), pixel->x()) = point.z();
+  }
+  return depth;
 }
 
 /// Pixels of the background in which points of every `stride`-th pixel are
@@ -64,7 +77,8 @@ std::vector<StandingObjects::Moving> StandingObjects::Watch(
     const std::vector<ModelSample>& samples, const LiveView& live,
     const DeformationGraph& background, const TermContext& context) {
   std::vector<Moving> moving;
-  Detect(std::move(detected), live, MeanRigidMotion(background));
+  Detect(std::move(detected), samples, live,
+         MeanRigidMotion(background).cast<float>());
   DeformationGraph apart = background;
   if (mapped_.empty() || !TrackApart(samples, live, context, &apart)) {
     return moving;
@@ -72,15 +86,11 @@ std::vector<StandingObjects::Moving> StandingObjects::Watch(
   std::vector<Mapped> standing;
   for (Mapped& mapped : mapped_) {
     const cv::Mat_<uchar>& mask = mapped.object.mask;
-    const std::vector<ModelSample> part = SamplesWithin(mask, samples);
     const OwnMotion motion =
-        FindOwnMotion(part, mask, live, apart, tracker_,
+        FindOwnMotion(SamplesWithin(mask, samples), mask, live, apart, tracker_,
                       options_.tracker.grazing_angle * M_PI / 180);
-    if (mapped.is_new) {
-      for (const ModelSample& s : part) mapped.points.push_back(s.point);
-      mapped.is_new = false;
-    }
-    if (motion.gain < options_.own_motion_gain) {
+    if (motion.gain < options_.own_motion_gain ||
+        motion.way > options_.split.assignment.way) {
       standing.push_back(std::move(mapped));
       continue;
     }
@@ -92,28 +102,66 @@ std::vector<StandingObjects::Moving> StandingObjects::Watch(
   return moving;
 }
 
+DepthState StandingObjects::StateOf(const Eigen::Vector3f& point, float depth,
+                                    const LiveView& live) const {
+  const DepthTolerance<double> gate = {options_.split.prior.background_gate};
+  return ClassifyDepth(depth, point.z(), gate.At(depth, live.camera.noise));
+}
+
 void StandingObjects::Detect(std::vector<StandingObject> detected,
+                             const std::vector<ModelSample>& samples,
                              const LiveView& live,
-                             const Rigid3d& camera_from_canonical) {
-  const Rigid3f motion = camera_from_canonical.cast<float>();
-  std::vector<Mapped> mapped(detected.size());
-  for (Mapped& known : mapped_) {
-    if (known.points.empty()) continue;
-    known.object.mask =
-        MaskOf(known.points, options_.render_stride, motion, live);
-    const auto in_view =
-        std::count_if(known.points.begin(), known.points.end(),
-                      [&](const auto& p) { return IsInView(p, motion, live); });
-    if (IsDetected(detected, known.object.mask)) continue;
-    known.missed += 2 * in_view > static_cast<int>(known.points.size());
-    if (known.missed <= options_.split.max_missed_frames)
-      mapped.push_back(std::move(known));
+                             const Rigid3f& camera_from_canonical) {
+  std::vector<StandingObject> objects;
+  std::vector<Mapped> mapped;
+  for (StandingObject& object : detected) {
+    std::vector<Eigen::Vector3f> points =
+        MappedPoints(object.mask, samples, live, camera_from_canonical);
+    if (points.empty()) continue;
+    objects.push_back(object);
+    mapped.push_back({std::move(object), 0, std::move(points)});
   }
-  for (std::size_t i = 0; i < detected.size(); ++i) {
-    mapped[i].object = std::move(detected[i]);
-    mapped[i].is_new = true;
+  const cv::Mat_<float> map = DepthOf(samples, options_.render_stride,
+                                      camera_from_canonical, live.camera);
+  for (Mapped& known : mapped_) {
+    known.object.mask = MaskOf(known.points, options_.render_stride,
+                               camera_from_canonical, live);
+    if (IsDetected(objects, known.object.mask)) continue;
+    int in_view = 0, gone = 0;
+    for (const Eigen::Vector3f& known_point : known.points) {
+      if (!IsInView(known_point, camera_from_canonical, live)) continue;
+      const Eigen::Vector3f point = camera_from_canonical * known_point;
+      const auto pixel = live.camera.PixelOf(point);
+      const float depth = map(pixel->y() / options_.render_stride,
+                              pixel->x() / options_.render_stride);
+      const DepthState state = StateOf(point, depth, live);
+      ++in_view;
+      gone += state == DepthState::kFree || state == DepthState::kUnmeasured;
+    }
+    known.missed += 2 * in_view > static_cast<int>(known.points.size());
+    if (2 * gone <= in_view &&
+        known.missed <= options_.split.max_missed_frames) {
+      mapped.push_back(std::move(known));
+    }
   }
   mapped_ = std::move(mapped);
+}
+
+std::vector<Eigen::Vector3f> StandingObjects::MappedPoints(
+    const cv::Mat_<uchar>& mask, const std::vector<ModelSample>& samples,
+    const LiveView& live, const Rigid3f& camera_from_canonical) const {
+  std::vector<Eigen::Vector3f> points;
+  std::size_t observed = 0;
+  for (const ModelSample& sample : SamplesWithin(mask, samples)) {
+    const Eigen::Vector3f point = camera_from_canonical * sample.point;
+    const auto pixel = live.camera.PixelOf(point);
+    if (!pixel) continue;
+    points.push_back(sample.point);
+    observed += StateOf(point, live.depth(pixel->y(), pixel->x()), live) ==
+                DepthState::kObserved;
+  }
+  if (2 * observed < points.size()) points.clear();
+  return points;
 }
 
 bool StandingObjects::TrackApart(const std::vector<ModelSample>& samples,
@@ -140,15 +188,13 @@ std::vector<Eigen::Vector3f> StandingObjects::PointsOfThing(
              options_.split.prior);
   const Rigid3f motion = camera_from_canonical.cast<float>();
   std::vector<Eigen::Vector3f> kept;
-  const DepthTolerance<double> gate = {options_.split.prior.background_gate};
   for (const Eigen::Vector3f& point : points) {
-    const Eigen::Vector3f moved = motion * point;
-    const auto pixel = live.camera.PixelOf(moved);
     if (IsInView(point, motion, live)) {
+      const Eigen::Vector3f moved = motion * point;
+      const auto pixel = live.camera.PixelOf(moved);
       const float depth = live.depth(pixel->y(), pixel->x());
-      const DepthState state =
-          ClassifyDepth(depth, moved.z(), gate.At(depth, live.camera.noise));
-      if (!thing(pixel->y(), pixel->x()) || state != DepthState::kObserved) {
+      if (!thing(pixel->y(), pixel->x()) ||
+          StateOf(moved, depth, live) != DepthState::kObserved) {
         continue;
       }
     }

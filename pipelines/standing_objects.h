@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/split/split_result.h"
 #include "splitfusion/pipelines/own_motion.h"
 #include "splitfusion/pipelines/pipeline_options.h"
@@ -26,13 +27,14 @@ class StandingObjects {
     std::vector<Eigen::Vector3f> points;
   };
 
-  /// Takes in those detected in a frame, with the labels of its surfaces, and
-  /// takes those out that FindOwnMotion() finds a gain of at least
-  /// `own_motion_gain` for, as the camera sees it that is tracked without any
-  /// of them. One of frames before that shares half of its pixels with none of
-  /// the detected stays where it was mapped without a detection, for at most
-  /// `max_missed_frames` in which it is in view: detectors miss things just as
-  /// they begin to move.
+  /// Takes in those detected in a frame, with the labels of its surfaces, that
+  /// are where they were mapped, and takes those out that FindOwnMotion() finds
+  /// a gain of at least `own_motion_gain` for, as the camera sees it that is
+  /// tracked without any of them; it has just begun, so that its way is at most
+  /// the assignment's of one frame. One of frames before that shares half of
+  /// its pixels with none of the detected stays where it was mapped without a
+  /// detection, while it is in the map and for at most `max_missed_frames` in
+  /// which it is in view: detectors miss things just as they begin to move.
   ///
   /// `samples`: the background's model points in view; `background`: as tracked
   /// in this frame; `context`: of it, as of SurfaceTracker::Track().
@@ -55,7 +57,6 @@ class StandingObjects {
     // What was mapped within its mask then: canonical frame of the background,
     // metres.
     std::vector<Eigen::Vector3f> points;
-    bool is_new = false;  // Of this frame: the points in view are not there.
 
     template <typename Archive>
     void Serialize(Archive* archive) {
@@ -63,8 +64,17 @@ class StandingObjects {
     }
   };
 
-  void Detect(std::vector<StandingObject> detected, const LiveView& live,
-              const Rigid3d& camera_from_canonical);
+  void Detect(std::vector<StandingObject> detected,
+              const std::vector<ModelSample>& samples, const LiveView& live,
+              const Rigid3f& camera_from_canonical);
+  /// The model points of a detection, canonical frame, metres; none if most are
+  /// not where they were mapped: it shows something else.
+  std::vector<Eigen::Vector3f> MappedPoints(
+      const cv::Mat_<uchar>& mask, const std::vector<ModelSample>& samples,
+      const LiveView& live, const Rigid3f& camera_from_canonical) const;
+  /// A point of the camera frame compared with a depth, metres.
+  DepthState StateOf(const Eigen::Vector3f& point, float depth,
+                     const LiveView& live) const;
   /// Tracks the background without what may move, and take the camera along.
   bool TrackApart(const std::vector<ModelSample>& samples, const LiveView& live,
                   const TermContext& context, DeformationGraph* apart) const;
