@@ -1,5 +1,7 @@
 #include "splitfusion/pipelines/standing_objects.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -83,19 +85,24 @@ std::vector<StandingObjects::Moving> StandingObjects::Watch(
   if (mapped_.empty() || !TrackApart(samples, live, context, &apart)) {
     return moving;
   }
-  std::vector<Mapped> standing;
-  for (Mapped& mapped : mapped_) {
-    const cv::Mat_<uchar>& mask = mapped.object.mask;
-    const OwnMotion motion =
+  std::vector<OwnMotion> motions(mapped_.size());
+  tbb::parallel_for(std::size_t{0}, mapped_.size(), [&](std::size_t i) {
+    const cv::Mat_<uchar>& mask = mapped_[i].object.mask;
+    motions[i] =
         FindOwnMotion(SamplesWithin(mask, samples), mask, live, apart, tracker_,
                       options_.tracker.grazing_angle * M_PI / 180);
+  });
+  std::vector<Mapped> standing;
+  for (std::size_t i = 0; i < mapped_.size(); ++i) {
+    Mapped& mapped = mapped_[i];
+    const OwnMotion& motion = motions[i];
     if (motion.gain < options_.own_motion_gain ||
         motion.way > options_.split.assignment.way) {
       standing.push_back(std::move(mapped));
       continue;
     }
     std::vector<Eigen::Vector3f> points =
-        PointsOfThing(mapped.points, mask, live, motion.camera_from_canonical);
+        PointsOfThing(mapped, live, motion.camera_from_canonical);
     moving.push_back({std::move(mapped.object), std::move(points)});
   }
   mapped_ = std::move(standing);
@@ -175,20 +182,26 @@ bool StandingObjects::TrackApart(const std::vector<ModelSample>& samples,
   for (const Mapped& mapped : mapped_) {
     rest.uncertain.setTo(255, mapped.object.mask);
   }
+  // A quarter of the model points tell the camera's motion well enough.
+  std::vector<ModelSample> thinned;
+  const int step = 2 * options_.render_stride;
+  for (const ModelSample& sample : samples) {
+    if (sample.u % step == 0 && sample.v % step == 0) thinned.push_back(sample);
+  }
   SurfaceReport report;
-  return tracker_.Track(samples, /*tracks=*/{}, rest, kTrialSurface,
+  return tracker_.Track(thinned, /*tracks=*/{}, rest, kTrialSurface,
                         /*still=*/Rigid3d::Identity(), apart, &report, context);
 }
 
 std::vector<Eigen::Vector3f> StandingObjects::PointsOfThing(
-    const std::vector<Eigen::Vector3f>& points, const cv::Mat_<uchar>& mask,
-    const LiveView& live, const Rigid3d& camera_from_canonical) const {
+    const Mapped& mapped, const LiveView& live,
+    const Rigid3d& camera_from_canonical) const {
   const cv::Mat_<uchar> thing =
-      CutOut(mask, live.map, live.color, options_.split.graph_cut,
+      CutOut(mapped.object.mask, live.map, live.color, options_.split.graph_cut,
              options_.split.prior);
   const Rigid3f motion = camera_from_canonical.cast<float>();
   std::vector<Eigen::Vector3f> kept;
-  for (const Eigen::Vector3f& point : points) {
+  for (const Eigen::Vector3f& point : mapped.points) {
     if (IsInView(point, motion, live)) {
       const Eigen::Vector3f moved = motion * point;
       const auto pixel = live.camera.PixelOf(moved);

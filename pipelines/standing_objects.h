@@ -78,11 +78,11 @@ class StandingObjects {
   /// Tracks the background without what may move, and take the camera along.
   bool TrackApart(const std::vector<ModelSample>& samples, const LiveView& live,
                   const TermContext& context, DeformationGraph* apart) const;
-  /// Of `points`, those that the motion takes onto the thing where it is seen,
-  /// or to where it is not in view: a mask has some of what is beside it.
+  /// Of its points, those that the motion takes onto the thing where it is
+  /// seen, or to where it is not in view: a mask has some of what is beside it.
   std::vector<Eigen::Vector3f> PointsOfThing(
-      const std::vector<Eigen::Vector3f>& points, const cv::Mat_<uchar>& mask,
-      const LiveView& live, const Rigid3d& camera_from_canonical) const;
+      const Mapped& mapped, const LiveView& live,
+      const Rigid3d& camera_from_canonical) const;
 
   PipelineOptions options_;
   SurfaceTracker tracker_;
