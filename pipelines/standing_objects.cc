@@ -10,6 +10,7 @@
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/energy/trial_surface.h"
 #include "splitfusion/lib/split/surface_prior.h"
+#include "splitfusion/pipelines/pipeline_options.h"
 
 namespace splitfusion {
 namespace {
@@ -72,7 +73,11 @@ SurfaceTracker MakeTracker(TrackerOptions options) {
 }  // namespace
 
 StandingObjects::StandingObjects(const PipelineOptions& options)
-    : options_(options), tracker_(MakeTracker(options.tracker)) {}
+    : options_(options.split),
+      stride_(options.render_stride),
+      min_gain_(options.own_motion_gain),
+      grazing_(options.tracker.grazing_angle * M_PI / 180),
+      tracker_(MakeTracker(options.tracker)) {}
 
 std::vector<StandingObjects::Moving> StandingObjects::Watch(
     std::vector<StandingObject> detected,
@@ -88,16 +93,14 @@ std::vector<StandingObjects::Moving> StandingObjects::Watch(
   std::vector<OwnMotion> motions(mapped_.size());
   tbb::parallel_for(std::size_t{0}, mapped_.size(), [&](std::size_t i) {
     const cv::Mat_<uchar>& mask = mapped_[i].object.mask;
-    motions[i] =
-        FindOwnMotion(SamplesWithin(mask, samples), mask, live, apart, tracker_,
-                      options_.tracker.grazing_angle * M_PI / 180);
+    motions[i] = FindOwnMotion(SamplesWithin(mask, samples), mask, live, apart,
+                               tracker_, grazing_);
   });
   std::vector<Mapped> standing;
   for (std::size_t i = 0; i < mapped_.size(); ++i) {
     Mapped& mapped = mapped_[i];
     const OwnMotion& motion = motions[i];
-    if (motion.gain < options_.own_motion_gain ||
-        motion.way > options_.split.assignment.way) {
+    if (motion.gain < min_gain_ || motion.way > options_.assignment.way) {
       standing.push_back(std::move(mapped));
       continue;
     }
@@ -111,7 +114,7 @@ std::vector<StandingObjects::Moving> StandingObjects::Watch(
 
 DepthState StandingObjects::StateOf(const Eigen::Vector3f& point, float depth,
                                     const LiveView& live) const {
-  const DepthTolerance<double> gate = {options_.split.prior.background_gate};
+  const DepthTolerance<double> gate = {options_.prior.background_gate};
   return ClassifyDepth(depth, point.z(), gate.At(depth, live.camera.noise));
 }
 
@@ -128,26 +131,24 @@ void StandingObjects::Detect(std::vector<StandingObject> detected,
     objects.push_back(object);
     mapped.push_back({std::move(object), 0, std::move(points)});
   }
-  const cv::Mat_<float> map = DepthOf(samples, options_.render_stride,
-                                      camera_from_canonical, live.camera);
+  const cv::Mat_<float> map =
+      DepthOf(samples, stride_, camera_from_canonical, live.camera);
   for (Mapped& known : mapped_) {
-    known.object.mask = MaskOf(known.points, options_.render_stride,
-                               camera_from_canonical, live);
+    known.object.mask =
+        MaskOf(known.points, stride_, camera_from_canonical, live);
     if (IsDetected(objects, known.object.mask)) continue;
     int in_view = 0, gone = 0;
     for (const Eigen::Vector3f& known_point : known.points) {
       if (!IsInView(known_point, camera_from_canonical, live)) continue;
       const Eigen::Vector3f point = camera_from_canonical * known_point;
       const auto pixel = live.camera.PixelOf(point);
-      const float depth = map(pixel->y() / options_.render_stride,
-                              pixel->x() / options_.render_stride);
+      const float depth = map(pixel->y() / stride_, pixel->x() / stride_);
       const DepthState state = StateOf(point, depth, live);
       ++in_view;
       gone += state == DepthState::kFree || state == DepthState::kUnmeasured;
     }
     known.missed += 2 * in_view > static_cast<int>(known.points.size());
-    if (2 * gone <= in_view &&
-        known.missed <= options_.split.max_missed_frames) {
+    if (2 * gone <= in_view && known.missed <= options_.max_missed_frames) {
       mapped.push_back(std::move(known));
     }
   }
@@ -184,7 +185,7 @@ bool StandingObjects::TrackApart(const std::vector<ModelSample>& samples,
   }
   // A quarter of the model points tell the camera's motion well enough.
   std::vector<ModelSample> thinned;
-  const int step = 2 * options_.render_stride;
+  const int step = 2 * stride_;
   for (const ModelSample& sample : samples) {
     if (sample.u % step == 0 && sample.v % step == 0) thinned.push_back(sample);
   }
@@ -196,9 +197,8 @@ bool StandingObjects::TrackApart(const std::vector<ModelSample>& samples,
 std::vector<Eigen::Vector3f> StandingObjects::PointsOfThing(
     const Mapped& mapped, const LiveView& live,
     const Rigid3d& camera_from_canonical) const {
-  const cv::Mat_<uchar> thing =
-      CutOut(mapped.object.mask, live.map, live.color, options_.split.graph_cut,
-             options_.split.prior);
+  const cv::Mat_<uchar> thing = CutOut(mapped.object.mask, live.map, live.color,
+                                       options_.graph_cut, options_.prior);
   const Rigid3f motion = camera_from_canonical.cast<float>();
   std::vector<Eigen::Vector3f> kept;
   for (const Eigen::Vector3f& point : mapped.points) {

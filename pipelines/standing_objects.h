@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "splitfusion/lib/geometry/depth_comparison.h"
+#include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/lib/split/split_result.h"
 #include "splitfusion/pipelines/own_motion.h"
-#include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
+
+struct PipelineOptions;
 
 /// Detections of rigid classes that are part of the background, until they are
 /// found to move on their own.
@@ -84,7 +86,10 @@ class StandingObjects {
       const Mapped& mapped, const LiveView& live,
       const Rigid3d& camera_from_canonical) const;
 
-  PipelineOptions options_;
+  SplitOptions options_;
+  int stride_;       // Of the samples, pixels.
+  double min_gain_;  // OwnMotion::gain.
+  double grazing_;   // Radians.
   SurfaceTracker tracker_;
   std::vector<Mapped> mapped_;
 };
