@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipelines/tracking_scenes.h"
+#include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/standing_objects.h"
 
 namespace splitfusion {
