@@ -17,6 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Given poses are no farther from the first one, metres: a volume has a table
+/// of the box of all that it holds.
+constexpr double kMaxWay = 200;
+
 std::optional<ColorCamera> ResolveColorCamera(const std::string& folder,
                                               const std::string& option) {
   if (option == "none") return std::nullopt;
@@ -125,6 +129,15 @@ void ImageFolderReader::FindPoses() {
                        ": expected one of every frame");
     }
     poses_[indices_[i]] = *pose;
+    const double way =
+        (pose->translation() - poses_.at(indices_[0]).translation()).norm();
+    if (!(way <= kMaxWay)) {
+      throw InputError(options_.trajectory + ": the pose at " +
+                       std::to_string(time) + " s is " + std::to_string(way) +
+                       " m from that of the first frame: expected " +
+                       std::to_string(static_cast<int>(kMaxWay)) +
+                       " m at most");
+    }
   }
 }
 

@@ -238,6 +238,16 @@ TEST_F(ImageFolderReaderTest, GivenPosesAreThoseOfTheNearestTime) {
   EXPECT_FALSE(ImageFolderReader(folder_ / "").Next()->world_from_camera);
 }
 
+TEST_F(ImageFolderReaderTest, GivenPosesAreOfOnePlace) {
+  ReaderOptions options;
+  options.trajectory = folder_.Write(
+      "given.txt",
+      "0.5 1 0 0 0 0 0 1\n1.5 30000 0 0 0 0 0 1\n2.5 1 0 0 0 0 0 1\n");
+  ExpectInputError([&] { ImageFolderReader(folder_ / "", options); },
+                   "given.txt: the pose at 1.500000 s is 29999.000000 m from "
+                   "that of the first frame: expected 200 m at most");
+}
+
 TEST_F(ImageFolderReaderTest, EveryFrameNeedsAGivenPose) {
   ReaderOptions options;
   options.trajectory =
