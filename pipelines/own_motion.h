@@ -21,9 +21,11 @@ struct OwnMotion {
   /// of its noise as tracking weighs it. A distance counts three standard
   /// deviations at most. 0 if the part cannot be tracked on its own.
   double gain = 0;
-  /// Where the motion takes what was mapped.
+  /// The motion: from the background's canonical frame to the camera's.
   Rigid3d camera_from_canonical = Rigid3d::Identity();
-  double way = 0;  ///< Of the mean model point, metres.
+  /// Mean distance of the model points between this motion and standing still,
+  /// metres.
+  double way = 0;
 };
 
 /// Those of a rendering whose pixels are in `mask` (HxW, 255).

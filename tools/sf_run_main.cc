@@ -302,7 +302,8 @@ int SfRunMain(int argc, char** argv, Registries registries) {
   return ToolMain(
       argc, argv,
       "Tracks and maps the rigid and non-rigid objects of an RGB-D sequence.\n"
-      "sf_run --sequence=DIR --output=RUN [--masks=DIR|none | --model=FILE.onnx]\n",
+      "sf_run --sequence=DIR --output=RUN [--masks=DIR|none | "
+      "--model=FILE.onnx]\n",
       [&] { return RunSequence(std::move(registries)); }, "sf_run_main");
 }
 

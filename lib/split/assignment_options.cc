@@ -18,7 +18,8 @@ void AssignmentOptions::List(OptionList* list) {
   list->Number(
       "way", &way, Range::AtLeast(0), "metres",
       "Added to it for every frame since the last detection, or, in the "
-      "search, since it was tracked.");
+      "search, since it was tracked; also the longest way of the frame in "
+      "which a standing thing begins to move.");
   list->Number(
       "room", &room, Range::Above(0), "metres",
       "Extent of the room, where others are anywhere; the deviation is "

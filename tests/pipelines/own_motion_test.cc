@@ -103,6 +103,19 @@ TEST_F(StandingObjectsTest, MoveOnceAndAreNotStandingAnyMore) {
   EXPECT_EQ(CountMoving(false, moved_), 0u);
 }
 
+TEST_F(StandingObjectsTest, BeginToMoveByNoMoreThanTheWayOfAFrame) {
+  const Eigen::Vector3d jump = kPlace - Eigen::Vector3d(0, 0, 0.08);
+  EXPECT_EQ(CountMoving(true, kPlace), 0u);
+  EXPECT_EQ(CountMoving(false, jump), 0u);
+  EXPECT_EQ(CountMoving(false, moved_), 1u);
+}
+
+TEST_F(StandingObjectsTest, AreNotWhatWasNeverMappedWhereItIsSeen) {
+  const Eigen::Vector3d elsewhere = kPlace - Eigen::Vector3d(0, 0, 0.3);
+  EXPECT_EQ(CountMoving(true, elsewhere), 0u);
+  EXPECT_EQ(CountMoving(false, moved_), 0u);
+}
+
 TEST_F(StandingObjectsTest, HaveNothingOfWhatIsBesideThemInALooseMask) {
   const std::size_t of_ball = SamplesWithin(mask_, mapped_).size();
   cv::dilate(Ball(kPlace) > 0, mask_, cv::Mat::ones(13, 13, CV_8U));
