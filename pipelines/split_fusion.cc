@@ -438,7 +438,14 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
                                              OptionsOf(id), options_.graph);
     if (!surface->Initialize(live_)) return;
     surfaces_[id] = std::move(surface);
-    if (id != 0) splitter_.mutable_track(id)->Apply(TrackEvent::kFits);
+    if (id != 0) {
+      splitter_.mutable_track(id)->Apply(TrackEvent::kFits);
+      Surface& background = *surfaces_.at(0);
+      // Until it moved it was background.
+      if (kind == SurfaceKind::kRigid && background.is_ray_cast()) {
+        background.ForgetOther(live_, id);
+      }
+    }
     SurfaceReport born;
     born.id = id;
     born.event = "born";

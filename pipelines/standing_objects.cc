@@ -51,14 +51,12 @@ cv::Mat_<uchar> MaskOf(const std::vector<Eigen::Vector3f>& points, int stride,
   return mask & (live.labels == 0);
 }
 
-/// Whether a detection has half of its pixels and of a mask's in common with
-/// it.
+/// Whether a detection has more than half of a mask's pixels.
 bool IsDetected(const std::vector<StandingObject>& detected,
                 const cv::Mat_<uchar>& mask) {
   const int pixels = cv::countNonZero(mask);
   return std::any_of(detected.begin(), detected.end(), [&](const auto& other) {
-    return 2 * cv::countNonZero(mask & other.mask) >
-           std::max(pixels, cv::countNonZero(other.mask));
+    return 2 * cv::countNonZero(mask & other.mask) > pixels;
   });
 }
 

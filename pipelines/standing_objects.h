@@ -33,10 +33,11 @@ class StandingObjects {
   /// are where they were mapped, and takes those out that FindOwnMotion() finds
   /// a gain of at least `own_motion_gain` for, as the camera sees it that is
   /// tracked without any of them; it has just begun, so that its way is at most
-  /// the assignment's of one frame. One of frames before that shares half of
-  /// its pixels with none of the detected stays where it was mapped without a
-  /// detection, while it is in the map and for at most `max_missed_frames` in
-  /// which it is in view: detectors miss things just as they begin to move.
+  /// the assignment's of one frame. One of frames before of which none of the
+  /// detected has more than half of the pixels stays where it was mapped
+  /// without a detection, while it is in the map and for at most
+  /// `max_missed_frames` in which it is in view: detectors miss things just as
+  /// they begin to move.
   ///
   /// `samples`: the background's model points in view; `background`: as tracked
   /// in this frame; `context`: of it, as of SurfaceTracker::Track().

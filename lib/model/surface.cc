@@ -150,6 +150,22 @@ void Surface::Forget(const std::vector<Eigen::Vector3f>& places) {
   ForgetAround(places, options_.tsdf.truncation, &volume_);
 }
 
+void Surface::ForgetOther(const LiveView& live, int other) {
+  constexpr int kPixelStride = 2;  // Truncations are many pixels wide.
+  const Rigid3f canonical_from_camera =
+      MeanRigidMotion(graph_).inverse().cast<float>();
+  std::vector<Eigen::Vector3f> places;
+  for (int v = 0; v < live.depth.rows; v += kPixelStride) {
+    for (int u = 0; u < live.depth.cols; u += kPixelStride) {
+      if (!IsCertain(live, other, v, u)) continue;
+      const cv::Vec3f& p = live.map.points(v, u);
+      places.push_back(canonical_from_camera *
+                       Eigen::Vector3f(p[0], p[1], p[2]));
+    }
+  }
+  Forget(places);
+}
+
 int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
   std::vector<Eigen::Vector3f> warped = WarpedVertices();
   refuted_.Look(live, id_, warped, mesh_skinning(), graph_.size(),

@@ -74,6 +74,9 @@ class Surface {
   /// canonical frame (metres), of a rigid surface: it is not of this one.
   void Forget(const std::vector<Eigen::Vector3f>& places);
 
+  /// Forgets, of a rigid surface, what the live pixels of another one show.
+  void ForgetOther(const LiveView& live, int other);
+
   /// Extracts the canonical mesh; its graph follows it.
   void UpdateMesh();
 

@@ -122,7 +122,7 @@ class Comparison {
     const double iou = OverlapWith(track.id).iou;
     const double overlap = IouRatio(iou, options_);
     // Place tells nothing of these: a chair beside a person is where he is.
-    if (!candidate_.trusted) return overlap - options_.untrusted;
+    if (!MayBe(track)) return overlap - options_.untrusted;
     const double gain =
         AppearanceRatio(candidate_.appearance, track.appearance,
                         known_.frame - track.last_detected_frame, options_);
@@ -137,18 +137,22 @@ class Comparison {
 
   double GainOf(const TentativeTrack& track) const {
     if (Identity() > 0) return Identity() == track.appearance.identity;
-    return IouRatio(MaskIou(candidate_.mask, track.mask), options_) +
-           AppearanceRatio(candidate_.appearance, track.appearance,
-                           known_.frame - track.frame, options_);
+    const double overlap =
+        IouRatio(MaskIou(candidate_.mask, track.mask), options_);
+    // What is alike and near may be another one: chairs stand side by side.
+    if (track.moves) return overlap;
+    return overlap + AppearanceRatio(candidate_.appearance, track.appearance,
+                                     known_.frame - track.frame, options_);
   }
 
   /// The surface that it is a piece of; 0 if none.
   int Whole() const {
-    if (!candidate_.trusted || Identity() > 0) return 0;
+    if (Identity() > 0) return 0;
     int whole = 0;
     double best = options_.min_contained;
     for (const auto& [id, common] : common_) {
-      if (known_.tracks.count(id) == 0) continue;
+      const auto track = known_.tracks.find(id);
+      if (track == known_.tracks.end() || !MayBe(track->second)) continue;
       const double contained = OverlapWith(id).contained;
       if (contained < best) continue;
       best = contained;
@@ -159,6 +163,11 @@ class Comparison {
 
  private:
   int Identity() const { return candidate_.appearance.identity; }
+
+  bool MayBe(const Track& track) const {
+    return candidate_.trusted ||
+           (candidate_.apart && track.kind == SurfaceKind::kRigid);
+  }
 
   const Candidate& candidate_;
   const KnownSurfaces& known_;

@@ -23,6 +23,9 @@ struct Candidate {
   bool trusted = true;
   bool moved = false;  ///< Of a rigid class, but stands where space was empty.
   Appearance appearance;  ///< Of its pixels.
+  /// Of a rigid class, and most of it is not where background was mapped: may
+  /// be a known surface of such a class.
+  bool apart = false;
 };
 
 /// What a detection is of.
@@ -63,7 +66,9 @@ struct KnownSurfaces {
 /// Inactive and occluded tracks take part: where nothing of one is projected,
 /// colour and place decide. What is left and lies inside of a surface, at its
 /// depth, is a piece of it. The class does not count: detectors change their
-/// mind about it. Where identities are given these alone decide.
+/// mind about it. Of one that is not trusted, overlap alone counts, unless it
+/// is apart and the surface rigid. Where identities are given these alone
+/// decide.
 std::vector<Match> AssignDetections(const std::vector<Candidate>& candidates,
                                     const KnownSurfaces& known,
                                     const AssignmentOptions& options);

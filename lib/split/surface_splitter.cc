@@ -198,11 +198,18 @@ cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
     if (tracks_.at(id).kind == SurfaceKind::kRigid) continue;
     claimed |= input.compared.labels == id;
   }
-  return objects_.Watch(
-      {input.frame.index, input.frame.depth, input.points,
-       input.prior.world_from_camera, claimed,
-       input.compared.background == static_cast<int>(DepthState::kOccluded)},
-      candidates);
+  const cv::Mat_<uchar> in_front =
+      input.compared.background == static_cast<int>(DepthState::kOccluded);
+  const cv::Mat_<uchar> elsewhere = in_front | (input.compared.labels > 0);
+  for (Candidate& candidate : *candidates) {
+    const cv::Mat_<uchar> seen = candidate.mask & (input.frame.depth > 0);
+    candidate.apart =
+        objects_.IsWatched(candidate) &&
+        2 * cv::countNonZero(seen & elsewhere) > cv::countNonZero(seen);
+  }
+  return objects_.Watch({input.frame.index, input.frame.depth, input.points,
+                         input.prior.world_from_camera, claimed, in_front},
+                        candidates);
 }
 
 void SurfaceSplitter::FollowMoving(const std::vector<Match>& matches,

@@ -45,6 +45,24 @@ TEST(Surface, TheRigidBackgroundHasOneNodeAndIsRayCast) {
   }
 }
 
+TEST(Surface, ForgetsWhatIsOfAnotherOne) {
+  LiveView live = ViewWithBox(kHalf);
+  live.labels.setTo(0);  // Nobody knows yet that the box is one.
+  Surface background(0, "background", SurfaceKind::kRigid, 0, {});
+  ASSERT_TRUE(background.Initialize(live));
+  for (int i = 0; i < 10; ++i) background.Fuse(live);
+  live = ViewWithBox(kHalf);
+  background.ForgetOther(live, 1);
+  background.FinishMesh();
+  int wall = 0;
+  for (const Eigen::Vector3f& v : background.mesh().vertices) {
+    wall += v.z() > 1.4;
+    const auto pixel = live.camera.PixelOf(v);
+    EXPECT_FALSE(v.z() < 1.1 && IsCertain(live, 1, pixel->y(), pixel->x()));
+  }
+  EXPECT_GT(wall, 1000);
+}
+
 TEST(Surface, NothingSeenIsNoSurface) {
   LiveView live = ViewWithBox(kHalf);
   live.labels.setTo(0);

@@ -129,6 +129,16 @@ TEST_F(StandingObjectsTest, HaveNothingOfWhatIsBesideThemInALooseMask) {
   EXPECT_LT(beside, 0.02 * of_ball);
 }
 
+TEST_F(StandingObjectsTest, ArePartsOfWhatIsDetectedWhole) {
+  const cv::Mat_<uchar> whole = mask_.clone();
+  const cv::Rect box = cv::boundingRect(whole);
+  mask_(cv::Rect(box.x, box.y, box.width, 6 * box.height / 10)) = 0;
+  EXPECT_EQ(CountMoving(true, kPlace), 0u);
+  mask_ = whole;
+  EXPECT_EQ(CountMoving(true, kPlace), 0u);
+  EXPECT_EQ(CountMoving(true, moved_), 1u);  // Not the part, too.
+}
+
 TEST_F(StandingObjectsTest, AreWatchedThroughMissedDetections) {
   EXPECT_EQ(CountMoving(true, kPlace), 0u);
   for (int i = 0; i < 2; ++i) EXPECT_EQ(CountMoving(false, kPlace), 0u);

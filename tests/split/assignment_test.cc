@@ -172,6 +172,31 @@ TEST_F(AssignmentTest, UntrustedDetectionsNeedMore) {
   EXPECT_EQ(Run({most})[0].surface, 1);
 }
 
+TEST_F(AssignmentTest, AThingApartFromTheMapMayBeAnyRigidSurface) {
+  Candidate part = Of(RectMask({10, 20, 40, 16}));
+  part.trusted = false;
+  const auto surface_of = [&](bool apart, SurfaceKind kind) {
+    part.apart = apart;
+    tracks_.at(1).kind = kind;
+    return Run({part})[0].surface;
+  };
+  EXPECT_EQ(surface_of(true, SurfaceKind::kRigid), 1);
+  EXPECT_EQ(surface_of(true, SurfaceKind::kNonRigid), 0);
+  EXPECT_EQ(surface_of(false, SurfaceKind::kRigid), 0);
+}
+
+TEST_F(AssignmentTest, WhatIsBelievedToMoveIsKnownByOverlapAlone) {
+  const Candidate one = Of(RectMask({60, 20, 12, 80}));
+  Candidate beside = Of(RectMask({74, 20, 12, 80}));  // As like as can be.
+  tentative_.Record(-1, 0, one.mask, one.appearance, true);
+  beside.trusted = false;
+  EXPECT_EQ(Run({beside})[0].tentative, 0);
+  tentative_ = {};
+  tentative_.AddMoving(one.mask, one.appearance, 0, 1);
+  EXPECT_EQ(Run({beside})[0].tentative, -1);
+  EXPECT_EQ(Run({one})[0].tentative, 0);
+}
+
 TEST_F(AssignmentTest, TentativeTracksTakePart) {
   const cv::Rect there(60, 20, 25, 80);
   LayeredScene scene;
