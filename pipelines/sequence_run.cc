@@ -379,8 +379,10 @@ void SequenceRun::WarnOfUnknownClasses() const {
 void SequenceRun::WarnOfSkippedFrames() const {
   const std::vector<BadFrame> skipped = work_->reader.skipped();
   if (skipped.empty()) return;
-  Warn(std::to_string(skipped.size()) +
-       " frames are left out, the first: " + skipped.front().reason);
+  Warn((skipped.size() == 1 ? "1 frame is left out: "
+                            : std::to_string(skipped.size()) +
+                                  " frames are left out, the first: ") +
+       skipped.front().reason);
 }
 
 void SequenceRun::Warn(const std::string& line) const {

@@ -122,6 +122,10 @@ std::shared_ptr<Segmenter> SegmenterFromFlags(const ImageFolderReader& reader,
                                               const std::string& run) {
   CheckOption(FLAGS_mask_identities == "given" || FLAGS_mask_identities.empty(),
               "mask_identities", FLAGS_mask_identities, "given, or nothing");
+  CheckOption(FLAGS_mask_identities.empty() ||
+                  (FLAGS_masks != "none" && !HasNetworkFlags()),
+              "mask_identities", FLAGS_mask_identities,
+              "nothing, as it has no effect but with masks from files");
   if (HasNetworkFlags()) {
     std::shared_ptr<Segmenter> segmenter = MakeNetworkSegmenter(run);
     Classes known;

@@ -9,8 +9,7 @@ SolverRegistry BuiltinSolvers() {
     return MakeGaussNewton(options, MakePcgSolver);
   });
   registry.Register("gn_cholesky", [](const SolverOptions& options) {
-    return MakeGaussNewton(
-        options, [](const SolverOptions&) { return MakeCholeskySolver(); });
+    return MakeGaussNewton(options, MakeCholeskySolver);
   });
   registry.Register("ceres", MakeCeresSolver);
   return registry;

@@ -13,6 +13,7 @@
 #include "splitfusion/lib/base/process_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/ceres_blocks.h"
+#include "splitfusion/lib/energy/node_order.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/energy/term_residuals.h"
 #include "splitfusion/lib/energy/term_unknowns.h"
@@ -84,6 +85,41 @@ class CeresProblem {
       costs.back().final = final_costs[i];
     }
     return costs;
+  }
+
+  /// The order of elimination, one unknown block after the other; those of the
+  /// terms' own, which couple with all, last.
+  std::shared_ptr<ceres::ParameterBlockOrdering> Order(
+      const std::string& ordering) const {
+    const int nodes = static_cast<int>(twists_.size()) / kTwistSize;
+    std::vector<std::pair<int, int>> coupled;
+    std::vector<ceres::ResidualBlockId> residuals;
+    problem_.GetResidualBlocks(&residuals);
+    std::vector<double*> blocks;
+    const auto is_node = [&](const double* block) {
+      return block >= twists_.data() && block < twists_.data() + twists_.size();
+    };
+    const auto node_of = [&](const double* block) {
+      return static_cast<int>(block - twists_.data()) / kTwistSize;
+    };
+    for (const ceres::ResidualBlockId id : residuals) {
+      problem_.GetParameterBlocksForResidualBlock(id, &blocks);
+      for (std::size_t i = 0; i < blocks.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+          if (!is_node(blocks[i]) || !is_node(blocks[j])) continue;
+          coupled.emplace_back(node_of(blocks[j]), node_of(blocks[i]));
+        }
+      }
+    }
+    const std::vector<int> places = OrderNodes(nodes, coupled, ordering);
+    auto order = std::make_shared<ceres::ParameterBlockOrdering>();
+    problem_.GetParameterBlocks(&blocks);
+    int last = nodes;
+    for (double* block : blocks) {
+      order->AddElementToGroup(
+          block, is_node(block) ? places[node_of(block)] : last++);
+    }
+    return order;
   }
 
   ceres::Problem* problem() { return &problem_; }
@@ -236,6 +272,9 @@ class CeresSolver : public Solver {
     }
     if (input.initial_radius > 0) {
       options.initial_trust_region_radius = input.initial_radius;
+    }
+    if (options_.ordering != SolverOptions().ordering) {
+      options.linear_solver_ordering = problem.Order(options_.ordering);
     }
     ceres::Solver::Summary summary;
     ceres::Solve(options, problem.problem(), &summary);

@@ -2,6 +2,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "splitfusion/lib/energy/block_kernels.h"
@@ -16,8 +17,9 @@ using ScalarMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor>;
 /// The lower triangle of a block matrix with reordered nodes, for CHOLMOD.
 class ReorderedMatrix {
  public:
-  explicit ReorderedMatrix(const SymmetricBlockMatrix& matrix)
-      : places_(OrderNodes(matrix)) {
+  ReorderedMatrix(const SymmetricBlockMatrix& matrix,
+                  const std::string& ordering)
+      : places_(OrderNodes(matrix, ordering)) {
     CollectColumns(matrix);
     const int size = 6 * matrix.size();
     values_.resize(size, size);
@@ -96,7 +98,8 @@ double RelativeResidual(const BorderedMatrix& m, const BorderedVector& b,
 
 class CholeskySolver : public LinearSolver {
  public:
-  CholeskySolver() {
+  explicit CholeskySolver(std::string ordering)
+      : ordering_(std::move(ordering)) {
     // The nodes are ordered before.
     cholesky_.cholmod().nmethods = 1;
     cholesky_.cholmod().method[0].ordering = CHOLMOD_NATURAL;
@@ -109,7 +112,9 @@ class CholeskySolver : public LinearSolver {
   LinearSolution Solve(const BorderedMatrix& m, const BorderedVector& b,
                        BorderedVector* x) override {
     const bool first = matrix_ == nullptr;
-    if (first) matrix_ = std::make_unique<ReorderedMatrix>(m.nodes);
+    if (first) {
+      matrix_ = std::make_unique<ReorderedMatrix>(m.nodes, ordering_);
+    }
     const ScalarMatrix& values = matrix_->Fill(m.nodes);
     if (first) cholesky_.analyzePattern(values);
     x->nodes.assign(b.nodes.size(), Vector6::Zero());
@@ -144,14 +149,15 @@ class CholeskySolver : public LinearSolver {
     return reordered;
   }
 
+  std::string ordering_;
   Eigen::CholmodSupernodalLLT<ScalarMatrix, Eigen::Lower> cholesky_;
   std::unique_ptr<ReorderedMatrix> matrix_;
 };
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> MakeCholeskySolver() {
-  return std::make_unique<CholeskySolver>();
+std::unique_ptr<LinearSolver> MakeCholeskySolver(const SolverOptions& options) {
+  return std::make_unique<CholeskySolver>(options.ordering);
 }
 
 }  // namespace splitfusion

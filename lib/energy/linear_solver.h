@@ -40,7 +40,7 @@ std::unique_ptr<LinearSolver> MakePcgSolver(const SolverOptions& options);
 /// Supernodal Cholesky factorisation by CHOLMOD: of the nodes' part, once, and
 /// of the Schur complement of the terms' own unknowns. Nodes are ordered once,
 /// for the pattern of the first matrix; later ones must have the same.
-std::unique_ptr<LinearSolver> MakeCholeskySolver();
+std::unique_ptr<LinearSolver> MakeCholeskySolver(const SolverOptions& options);
 
 /// Levenberg-Marquardt on assembled 6x6 blocks of J^T J, whose systems `linear`
 /// solves: by preconditioned conjugate gradients gn_pcg (Eq. 7 as the paper

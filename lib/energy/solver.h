@@ -34,6 +34,10 @@ struct SolverOptions {
   std::string minimizer = "trust_region";
   /// Of sparse_normal_cholesky: suite_sparse or eigen_sparse.
   std::string sparse_library = "suite_sparse";
+  /// Of gn_cholesky and sparse_normal_cholesky with suite_sparse, the order of
+  /// elimination: amd (approximate minimum degree), nesdis (nested dissection
+  /// by METIS) or natural (as nodes were born).
+  std::string ordering = "amd";
   int threads = 1;         ///< Of Ceres; with more the last digits vary.
   int max_iterations = 1;  ///< Per association: a new one tells more.
   int max_linear_solver_iterations = 100;  ///< For cgnr and gn_pcg.

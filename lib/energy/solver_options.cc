@@ -25,6 +25,10 @@ void SolverOptions::List(OptionList* list) {
                "searches without one.");
   list->Choice("sparse_library", &sparse_library,
                {"suite_sparse", "eigen_sparse"}, "Of sparse_normal_cholesky.");
+  list->Choice("ordering", &ordering, {"amd", "nesdis", "natural"},
+               "Order of elimination, of gn_cholesky and "
+               "sparse_normal_cholesky: minimum degree, nested dissection, or "
+               "as nodes were born.");
   list->Number("solver_threads", &threads, {1, 1024}, "threads",
                "Of ceres; with more the last digits change from run to run.");
   list->Number("solver_iterations", &max_iterations, Range::AtLeast(1), "",
@@ -86,12 +90,16 @@ void SolverOptions::DemandEffect(OptionList* list) const {
   of_steps(max_linear_solver_iterations, unset.max_linear_solver_iterations,
            "linear_iterations");
   of_steps(eta, unset.eta, "eta");
-  demand(sparse_library == unset.sparse_library ||
-             (ceres && !line_search &&
-              (linear_solver == "sparse_normal_cholesky" ||
-               linear_solver == unset.linear_solver)),
-         "sparse_library", unset.sparse_library,
-         "linear_solver sparse_normal_cholesky or auto");
+  const bool sparse = ceres && !line_search &&
+                      (linear_solver == "sparse_normal_cholesky" ||
+                       linear_solver == unset.linear_solver);
+  demand(sparse_library == unset.sparse_library || sparse, "sparse_library",
+         unset.sparse_library, "linear_solver sparse_normal_cholesky or auto");
+  demand(!(ceres || gauss_newton) || ordering == unset.ordering ||
+             solver == "gn_cholesky" ||
+             (sparse && sparse_library == unset.sparse_library),
+         "ordering", unset.ordering,
+         "solver gn_cholesky, or sparse_normal_cholesky by suite_sparse");
   demand(!line_search || initial_radius == unset.initial_radius,
          "initial_radius", NumberText(unset.initial_radius),
          "minimizer trust_region");

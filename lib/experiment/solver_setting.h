@@ -18,7 +18,7 @@ struct SolverSetting {
 
 /// A setting from text: a solver, and after colons what is chosen of it, in any
 /// order, each a value of linear_solver, preconditioner, trust_region,
-/// minimizer or sparse_library. `base`: all other options.
+/// minimizer, sparse_library or ordering. `base`: all other options.
 ///
 /// @throw OptionError on a word that none of them has, or on choices that do
 ///     not go together.

@@ -11,6 +11,9 @@
 
 namespace splitfusion {
 
+/// Metres.
+constexpr double kFarthest = 1;  // Format: one device has both.
+
 ColorCamera ColorCamera::Registered(const PinholeCamera& depth_camera) {
   ColorCamera color;
   color.fx = depth_camera.fx;
@@ -28,8 +31,13 @@ void ColorCamera::Check() const {
   CheckOption(std::isfinite(cx), "cx of the colour camera", cx, "pixels");
   CheckOption(std::isfinite(cy), "cy of the colour camera", cy, "pixels");
   CheckOption(color_from_depth.matrix().allFinite(),
-              "pose of the colour camera", "nan",
-              "finite numbers");
+              "pose of the colour camera", "nan", "finite numbers");
+  const double way = color_from_depth.translation().norm();
+  CheckOption(way <= kFarthest, "way to the colour camera", way,
+              "1 m at most from the depth camera");
+  CheckOption(color_from_depth.linear()(2, 2) > 0, "view of the colour camera",
+              color_from_depth.linear()(2, 2),
+              "one ahead as the depth camera's");
 }
 
 ColorCamera ReadColorCamera(const std::string& path) {
@@ -46,6 +54,7 @@ ColorCamera ReadColorCamera(const std::string& path) {
       !(words >> std::ws).eof()) {
     lines[0].Refuse(expected);
   }
+  if (lines.size() > 1) lines[1].Refuse("one line " + expected);
   camera.color_from_depth.linear() = q.normalized().toRotationMatrix();
   camera.color_from_depth.translation() = t;
   try {

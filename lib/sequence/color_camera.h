@@ -23,8 +23,8 @@ struct ColorCamera {
   /// One that sees what the depth camera sees: registered colour.
   static ColorCamera Registered(const PinholeCamera& depth_camera);
 
-  /// @throw InputError if a focal length is not positive, or a value is not a
-  ///     finite number.
+  /// @throw InputError if a focal length is not positive, a value is not a
+  ///     finite number, or it is not beside the depth camera.
   void Check() const;
 };
 

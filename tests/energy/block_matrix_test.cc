@@ -101,7 +101,7 @@ TEST_F(BlockMatrixTest, EveryPreconditionerLeadsToTheSolution) {
 }
 
 TEST_F(BlockMatrixTest, CholeskySolvesAndSaysWhereItCannot) {
-  const auto solver = MakeCholeskySolver();
+  const auto solver = MakeCholeskySolver({});
   const BorderedVector b{RandomVector(6), Eigen::VectorXd(0)};
   BorderedMatrix matrix{matrix_, {}, Eigen::MatrixXd(0, 0)};
   BorderedVector x;
@@ -139,7 +139,7 @@ TEST_F(BlockMatrixTest, SolversSolveBorderedSystems) {
   options.eta = 1e-13;
   options.max_linear_solver_iterations = 500;
   for (const bool direct : {false, true}) {
-    const auto solver = direct ? MakeCholeskySolver() : MakePcgSolver(options);
+    const auto solver = direct ? MakeCholeskySolver({}) : MakePcgSolver(options);
     BorderedVector x;
     const LinearSolution solution = solver->Solve(matrix, b, &x);
     EXPECT_TRUE(solution.usable);
@@ -150,7 +150,7 @@ TEST_F(BlockMatrixTest, SolversSolveBorderedSystems) {
   }
   matrix.corner(0, 0) *= -1;
   BorderedVector x;
-  EXPECT_FALSE(MakeCholeskySolver()->Solve(matrix, b, &x).usable);
+  EXPECT_FALSE(MakeCholeskySolver({})->Solve(matrix, b, &x).usable);
   EXPECT_FALSE(MakePcgSolver(options)->Solve(matrix, b, &x).usable);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "splitfusion/lib/energy/solver.h"
 #include "support/custom_energy.h"
@@ -61,6 +62,30 @@ TEST_P(EverySolver, FindsTheSameMinimum) {
     EXPECT_LT((graph.motions[i].translation - reference.motions[i].translation)
                   .norm(),
               1e-5);
+  }
+}
+
+TEST(Orderings, LeadToTheSameMinimum) {
+  const TriangleMesh mesh = CornerMesh(0.02);
+  const DeformationGraph start = CoverWithNodes(mesh, 0.04);
+  const auto correspondences = PerfectAssociation(
+      mesh, start, [](const Eigen::Vector3d& p) { return Bend(p, 1, 1.0); });
+  const Energy energy = EnergyWithCustomTerm();
+  const SurfaceProblem problem{energy, correspondences, PinholeCamera()};
+  double least = 0;
+  for (const char* solver : {"ceres", "gn_cholesky"}) {
+    for (const char* ordering : {"amd", "nesdis", "natural"}) {
+      SCOPED_TRACE(std::string(solver) + " " + ordering);
+      SolverOptions options = Thorough();
+      options.solver = solver;
+      options.ordering = ordering;
+      options.Check();
+      DeformationGraph graph = start;
+      const SolverReport report = Minimize(problem, options, &graph);
+      EXPECT_EQ(report.termination, "CONVERGENCE");
+      if (least == 0) least = report.final_cost;
+      EXPECT_NEAR(report.final_cost, least, 1e-8 * least);
+    }
   }
 }
 

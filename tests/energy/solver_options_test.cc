@@ -84,6 +84,16 @@ TEST(SolverOptions, WhatHasNoEffectIsRefused) {
       "linear_solver cgnr");
   ExpectRefused([](SolverOptions* o) { o->sparse_library = "eigen_sparse"; },
                 "sparse_library = eigen_sparse: expected suite_sparse");
+  ExpectRefused([](SolverOptions* o) { o->ordering = "nesdis"; },
+                "ordering = nesdis: expected amd, as it has no effect but with "
+                "solver gn_cholesky");
+  ExpectRefused(
+      [](SolverOptions* o) {
+        o->solver = "ceres";
+        o->sparse_library = "eigen_sparse";
+        o->ordering = "natural";
+      },
+      "ordering = natural: expected amd");
   ExpectRefused(
       [](SolverOptions* o) {
         o->solver = "ceres";

@@ -43,6 +43,12 @@ TEST(ColorCamera, NamesWhatIsWrong) {
                    "fx of the colour camera");
   ExpectInputError(file("525 525 320 240 0 0 0 0 0 0 0\n"),
                    "quaternion of the colour camera");
+  ExpectInputError(file("525 525 320 240 0 0 0 0 0 0 1\n1 2 3\n"),
+                   "color_camera.txt:2");
+  ExpectInputError(file("525 525 320 240 9 0 0 0 0 0 1\n"),
+                   "way to the colour camera = 9: expected 1 m at most");
+  ExpectInputError(file("525 525 320 240 0 0 0 0 1 0 0\n"),
+                   "view of the colour camera = -1: expected one ahead");
 }
 
 }  // namespace

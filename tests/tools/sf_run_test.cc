@@ -141,7 +141,7 @@ TEST_F(SfRun, ABrokenFrameIsFoundBeforeTheFirstOne) {
   const ProgramResult skipped =
       Run("skipped", "--pictures_every=0 --skip_bad_frames");
   EXPECT_EQ(skipped.exit_code, 0) << skipped.errors;
-  EXPECT_THAT(skipped.errors, HasSubstr("1 frames are left out"));
+  EXPECT_THAT(skipped.errors, HasSubstr("1 frame is left out: "));
   const auto json = nlohmann::json::parse(folder_.Read("skipped/summary.json"));
   EXPECT_EQ(json["skipped_frames"], nlohmann::json::array({2}));
   EXPECT_EQ(json["frames"], 3);
