@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -18,6 +19,7 @@
 #include "flagfile_check.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/process_memory.h"
+#include "term_ends.h"
 
 DECLARE_bool(help);
 DECLARE_bool(helpshort);
@@ -185,10 +187,11 @@ bool ParseFlags(int argc, char** argv, const std::string& source,
       std::rethrow_exception(error);
     }
   } catch (const std::exception& error) {
-    EndFailed(name, error.what());
+    EndFailed(name, (RunningTerm() + error.what()).c_str());
   } catch (...) {
   }
-  EndFailed(name, "ended by an error of unknown kind");
+  EndFailed(name,
+            (RunningTerm() + "ended by an error of unknown kind").c_str());
 }
 
 }  // namespace
@@ -200,6 +203,8 @@ int ToolMain(int argc, char** argv, const std::string& usage,
   const std::string name = std::filesystem::path(argv[0]).filename().string();
   KeepFreedMemory();
   std::set_terminate(EndTerminated);
+  const char* slash = std::strrchr(argv[0], '/');
+  NameTermsThatEnd(slash == nullptr ? argv[0] : slash + 1);
   FLAGS_logtostderr = true;
   google::InitGoogleLogging(argv[0]);
   try {

@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "splitfusion/lib/energy/block_kernels.h"
+#include "splitfusion/lib/energy/term_call.h"
 #include "splitfusion/lib/energy/warped_points.h"
 
 namespace splitfusion {
@@ -48,9 +50,20 @@ struct BlockProblem::TupleRoom {
 
 BlockProblem::BlockProblem(const SurfaceProblem& problem,
                            const DeformationGraph& graph)
+    : BlockProblem(TermUnknowns(problem), problem, graph) {}
+
+BlockProblem::BlockProblem(const TermUnknowns& unknowns,
+                           const SurfaceProblem& problem,
+                           const DeformationGraph& graph)
+    : BlockProblem(unknowns, CollectResiduals(problem, unknowns, graph),
+                   graph) {}
+
+BlockProblem::BlockProblem(const TermUnknowns& unknowns,
+                           std::vector<ProblemTerm> terms,
+                           const DeformationGraph& graph)
     : graph_(graph),
-      unknowns_(problem),
-      terms_(CollectResiduals(problem, graph)),
+      unknowns_(unknowns),
+      terms_(std::move(terms)),
       twisted_(graph.size()) {
   for (std::size_t t = 0; t < terms_.size(); ++t) {
     const TermResiduals& residuals = terms_[t].residuals;
@@ -138,6 +151,28 @@ bool BlockProblem::Evaluate(const std::vector<double>& sought,
   }
   for (std::size_t t = 0; t < terms_.size(); ++t) EvaluateUnknowns(t);
   return std::isfinite(Cost());
+}
+
+std::string BlockProblem::NotFiniteAt(const std::vector<double>& sought) const {
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    std::vector<ProblemTerm> alone(terms_.size());
+    alone[t] = terms_[t];
+    BlockProblem problem(unknowns_, alone, graph_);
+    if (!problem.Evaluate(sought, /*with_jacobians=*/true)) {
+      return NotFiniteText(alone, problem.TermCosts());
+    }
+    if (problem.HasFiniteDerivatives()) continue;
+    return "The derivatives of term '" + terms_[t].cost.term +
+           "' are not finite.";
+  }
+  return "The derivatives of all terms are not finite.";
+}
+
+bool BlockProblem::HasFiniteDerivatives() const {
+  BorderedMatrix matrix = MakeMatrix();
+  BorderedVector gradient;
+  Assemble(&matrix, &gradient);
+  return IsFinite(gradient) && IsFinite(DiagonalOf(matrix));
 }
 
 double BlockProblem::Cost() const {
@@ -238,11 +273,12 @@ void BlockProblem::EvaluatePart(const PointPart& part, int index, int begin,
   const PointResiduals& residuals = *part.residuals;
   const int count = end - begin;
   double* cost = &costs_[part.term][index];
-  if (!residuals.Evaluate(begin, count, room->warped.data(),
-                          own_.data() + unknowns_.first(part.term), values,
-                          cost)) {
-    *cost = std::nan("");
-  }
+  const bool defined = CallTerm(terms_[part.term].cost.term, "evaluating", [&] {
+    return residuals.Evaluate(begin, count, room->warped.data(),
+                              own_.data() + unknowns_.first(part.term), values,
+                              cost);
+  });
+  if (!defined) *cost = std::nan("");
   if (values.by_point == nullptr || residuals.unknowns() == 0) return;
   corners_[part.term].Add(index, count * residuals.dims(), values.residuals,
                           values.by_unknowns);
@@ -256,10 +292,11 @@ void BlockProblem::EvaluateUnknowns(std::size_t term) {
                                   of_unknowns->unknowns());
   double* cost = &costs_[term].back();
   *cost = 0;
-  if (!of_unknowns->Evaluate(own_.data() + unknowns_.first(term),
-                             residuals.data(), derivatives.data(), cost)) {
-    *cost = std::nan("");
-  }
+  const bool defined = CallTerm(terms_[term].cost.term, "evaluating", [&] {
+    return of_unknowns->Evaluate(own_.data() + unknowns_.first(term),
+                                 residuals.data(), derivatives.data(), cost);
+  });
+  if (!defined) *cost = std::nan("");
   const int block = static_cast<int>(costs_[term].size()) - 1;
   corners_[term].Clear(block);
   corners_[term].Add(block, of_unknowns->rows(), residuals.data(),
@@ -272,9 +309,11 @@ void BlockProblem::EvaluateTuples(const TupleSet& set,
   tbb::parallel_for(tbb::blocked_range<int>(0, set.residuals->size(), kGrain),
                     [&](const tbb::blocked_range<int>& range) {
                       TupleRoom room;
-                      for (int i = range.begin(); i < range.end(); ++i) {
-                        EvaluateTuple(set, i, twists, with_jacobians, &room);
-                      }
+                      CallTerm(terms_[set.term].cost.term, "evaluating", [&] {
+                        for (int i = range.begin(); i < range.end(); ++i) {
+                          EvaluateTuple(set, i, twists, with_jacobians, &room);
+                        }
+                      });
                     });
 }
 

@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_ENERGY_BLOCK_PROBLEM_H_
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "splitfusion/lib/energy/block_pattern.h"
@@ -25,6 +26,8 @@ class BlockProblem {
  public:
   /// Gathers the residuals of all terms; `problem` and `graph` must outlive
   /// this.
+  ///
+  /// @throw InputError, std::runtime_error as CollectResiduals().
   BlockProblem(const SurfaceProblem& problem, const DeformationGraph& graph);
   BlockProblem(const BlockProblem&) = delete;             ///< Not copied.
   BlockProblem& operator=(const BlockProblem&) = delete;  ///< Not copied.
@@ -35,6 +38,9 @@ class BlockProblem {
 
   /// Evaluates all blocks at `sought`, which is as Start(); false if a value is
   /// not finite.
+  ///
+  /// @throw InputError or std::runtime_error if a functor throws; names the
+  /// term.
   bool Evaluate(const std::vector<double>& sought, bool with_jacobians);
 
   /// Cost as evaluated last.
@@ -49,12 +55,22 @@ class BlockProblem {
   /// Jacobians; `matrix` is one of MakeMatrix().
   void Assemble(BorderedMatrix* matrix, BorderedVector* gradient) const;
 
+  /// A sentence on the first term whose cost or derivatives are not finite at
+  /// `sought`, which is as Start(); on all terms together if that is none.
+  std::string NotFiniteAt(const std::vector<double>& sought) const;
+
   /// Terms of the energy.
   const std::vector<ProblemTerm>& terms() const { return terms_; }
   /// Their own unknowns.
   const TermUnknowns& unknowns() const { return unknowns_; }
 
  private:
+  BlockProblem(const TermUnknowns& unknowns, const SurfaceProblem& problem,
+               const DeformationGraph& graph);
+  /// Of residuals that are collected.
+  BlockProblem(const TermUnknowns& unknowns, std::vector<ProblemTerm> terms,
+               const DeformationGraph& graph);
+
   /// Residuals of one term over common points.
   struct PointPart {
     int term;
@@ -79,6 +95,7 @@ class BlockProblem {
   struct GroupRoom;
   struct TupleRoom;
 
+  bool HasFiniteDerivatives() const;
   void AddPoints(int term, const TermResiduals& residuals);
   void MakeBlocks();
   void EvaluatePoints(const PointSet& set, bool with_jacobians);

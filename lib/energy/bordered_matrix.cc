@@ -1,5 +1,7 @@
 #include "splitfusion/lib/energy/bordered_matrix.h"
 
+#include <algorithm>
+
 #include "splitfusion/lib/energy/block_kernels.h"
 
 namespace splitfusion {
@@ -17,6 +19,20 @@ void AddScaled(double factor, const std::vector<Vector6>& x,
 double Dot(const std::vector<Vector6>& a, const std::vector<Vector6>& b) {
   return DotProduct(6 * static_cast<int>(a.size()), a.data()->data(),
                     b.data()->data());
+}
+
+BorderedVector DiagonalOf(const BorderedMatrix& matrix) {
+  BorderedVector diagonal{{}, matrix.corner.diagonal()};
+  for (int i = 0; i < matrix.nodes.size(); ++i) {
+    diagonal.nodes.push_back(matrix.nodes.Diagonal(i).diagonal());
+  }
+  return diagonal;
+}
+
+bool IsFinite(const BorderedVector& values) {
+  return values.own.allFinite() &&
+         std::all_of(values.nodes.begin(), values.nodes.end(),
+                     [](const Vector6& v) { return v.allFinite(); });
 }
 
 void Multiply(const BorderedMatrix& matrix, const BorderedVector& x,

@@ -29,6 +29,12 @@ struct BorderedMatrix {
   Eigen::MatrixXd corner;                    ///< C
 };
 
+/// The entries of the diagonal.
+BorderedVector DiagonalOf(const BorderedMatrix& matrix);
+
+/// Whether all numbers are finite.
+bool IsFinite(const BorderedVector& values);
+
 /// y = M x.
 void Multiply(const BorderedMatrix& matrix, const BorderedVector& x,
               BorderedVector* y);

@@ -8,11 +8,14 @@
 #include <numeric>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/process_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/ceres_blocks.h"
+#include "splitfusion/lib/energy/ceres_watch.h"
 #include "splitfusion/lib/energy/node_order.h"
 #include "splitfusion/lib/energy/solver.h"
 #include "splitfusion/lib/energy/term_residuals.h"
@@ -38,19 +41,17 @@ class CeresProblem {
     for (int i = 0; i < graph.size(); ++i) {
       problem_.AddParameterBlock(&twists_[kTwistSize * i], kTwistSize);
     }
-    const std::vector<ProblemTerm> terms = CollectResiduals(input, graph);
-    residual_count_ = CountResiduals(terms);
-    for (std::size_t t = 0; t < terms.size(); ++t) {
+    terms_ = CollectResiduals(input, unknowns_, graph);
+    ids_.resize(terms_.size());
+    for (std::size_t t = 0; t < terms_.size(); ++t) {
       double* own = own_.data() + unknowns_.first(t);
       if (unknowns_.count(t) > 0) {
         problem_.AddParameterBlock(own, unknowns_.count(t));
       }
-      AddedTerm added;
-      added.cost = terms[t].cost;
-      for (ResidualBlock& block : MakeCeresBlocks(graph, terms[t].residuals)) {
-        added.ids.push_back(Add(std::move(block), own));
+      for (ResidualBlock& block : MakeCeresBlocks(graph, terms_[t].residuals)) {
+        block.cost = watch_.Guard(terms_[t].cost.term, std::move(block.cost));
+        ids_[t].push_back(Add(std::move(block), own));
       }
-      terms_.push_back(std::move(added));
     }
   }
 
@@ -60,21 +61,36 @@ class CeresProblem {
   }
 
   /// Cost of every term at the current twists.
+  ///
+  /// @throw What a term throws.
   std::vector<double> TermCosts() {
     std::vector<double> costs;
-    for (const AddedTerm& term : terms_) {
+    for (const auto& ids : ids_) {
       double cost = 0;
-      if (!term.ids.empty()) {
+      if (!ids.empty()) {
         ceres::Problem::EvaluateOptions options;
-        options.residual_blocks = term.ids;
+        options.residual_blocks = ids;
         if (!problem_.Evaluate(options, &cost, nullptr, nullptr, nullptr)) {
           cost = std::nan("");
         }
       }
       costs.push_back(cost);
     }
+    watch_.Rethrow();
     return costs;
   }
+
+  /// @throw What a term throws.
+  ceres::Solver::Summary Solve(const ceres::Solver::Options& options) {
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem_, &summary);
+    watch_.Rethrow();
+    return summary;
+  }
+
+  /// A sentence on the first term whose derivatives were found not to be
+  /// finite; empty: none.
+  std::string NotFinite() const { return watch_.NotFinite(); }
 
   std::vector<TermCost> Terms(const std::vector<double>& initial,
                               const std::vector<double>& final_costs) const {
@@ -87,51 +103,52 @@ class CeresProblem {
     return costs;
   }
 
-  /// The order of elimination, one unknown block after the other; those of the
-  /// terms' own, which couple with all, last.
+  /// The order of elimination, one block of unknowns after the other; those of
+  /// the terms' own, which couple with all, last.
   std::shared_ptr<ceres::ParameterBlockOrdering> Order(
       const std::string& ordering) const {
     const int nodes = static_cast<int>(twists_.size()) / kTwistSize;
-    std::vector<std::pair<int, int>> coupled;
-    std::vector<ceres::ResidualBlockId> residuals;
-    problem_.GetResidualBlocks(&residuals);
-    std::vector<double*> blocks;
-    const auto is_node = [&](const double* block) {
-      return block >= twists_.data() && block < twists_.data() + twists_.size();
-    };
-    const auto node_of = [&](const double* block) {
-      return static_cast<int>(block - twists_.data()) / kTwistSize;
-    };
-    for (const ceres::ResidualBlockId id : residuals) {
-      problem_.GetParameterBlocksForResidualBlock(id, &blocks);
-      for (std::size_t i = 0; i < blocks.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-          if (!is_node(blocks[i]) || !is_node(blocks[j])) continue;
-          coupled.emplace_back(node_of(blocks[j]), node_of(blocks[i]));
-        }
-      }
-    }
-    const std::vector<int> places = OrderNodes(nodes, coupled, ordering);
+    const std::vector<int> places = OrderNodes(nodes, CoupledNodes(), ordering);
     auto order = std::make_shared<ceres::ParameterBlockOrdering>();
+    std::vector<double*> blocks;
     problem_.GetParameterBlocks(&blocks);
     int last = nodes;
     for (double* block : blocks) {
-      order->AddElementToGroup(
-          block, is_node(block) ? places[node_of(block)] : last++);
+      const int node = NodeOf(block);
+      order->AddElementToGroup(block, node >= 0 ? places[node] : last++);
     }
     return order;
   }
 
-  ceres::Problem* problem() { return &problem_; }
-  /// Scalar residuals of the terms, before groups of points are joined.
-  int residual_count() const { return residual_count_; }
+  const ceres::Problem& problem() const { return problem_; }
+  const std::vector<ProblemTerm>& terms() const { return terms_; }
   const std::vector<double>& twists() const { return twists_; }
 
  private:
-  struct AddedTerm {
-    TermCost cost;
-    std::vector<ceres::ResidualBlockId> ids;
-  };
+  /// Of a block of twists; -1: of another block.
+  int NodeOf(const double* block) const {
+    const auto at = block - twists_.data();
+    const bool is_twist = at >= 0 && at < static_cast<long>(twists_.size());
+    return is_twist ? static_cast<int>(at) / kTwistSize : -1;
+  }
+
+  /// Pairs of nodes that a residual depends on.
+  std::vector<std::pair<int, int>> CoupledNodes() const {
+    std::vector<std::pair<int, int>> coupled;
+    std::vector<ceres::ResidualBlockId> residuals;
+    problem_.GetResidualBlocks(&residuals);
+    std::vector<double*> blocks;
+    for (const ceres::ResidualBlockId id : residuals) {
+      problem_.GetParameterBlocksForResidualBlock(id, &blocks);
+      for (std::size_t i = 0; i < blocks.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+          const int a = NodeOf(blocks[j]), b = NodeOf(blocks[i]);
+          if (a >= 0 && b >= 0) coupled.emplace_back(a, b);
+        }
+      }
+    }
+    return coupled;
+  }
 
   static ceres::Problem::Options ProblemOptions() {
     ceres::Problem::Options options;
@@ -152,9 +169,10 @@ class CeresProblem {
   std::vector<double> twists_;
   TermUnknowns unknowns_;
   std::vector<double> own_;  // As sought.
+  std::vector<ProblemTerm> terms_;
+  std::vector<std::vector<ceres::ResidualBlockId>> ids_;  // By term.
+  CeresWatch watch_;
   ceres::Problem problem_;
-  std::vector<AddedTerm> terms_;
-  int residual_count_ = 0;
 };
 
 bool IsDense(ceres::LinearSolverType type) {
@@ -254,14 +272,13 @@ class CeresSolver : public Solver {
     const Stopwatch stopwatch;
     SolverReport report;
     CeresProblem problem(input, *graph);
-    report.residuals = problem.residual_count();
+    report.residuals = CountResiduals(problem.terms());
     const std::vector<double> initial = problem.TermCosts();
     const double initial_cost =
         std::accumulate(initial.begin(), initial.end(), 0.0);
     ceres::Solver::Options options = CeresOptions(options_, *graph);
-    const double needed = IsDense(options.linear_solver_type)
-                              ? DenseBytes(*problem.problem())
-                              : 0;
+    const double needed =
+        IsDense(options.linear_solver_type) ? DenseBytes(problem.problem()) : 0;
     const auto free = static_cast<double>(AvailableMemoryBytes());
     if (needed > free) {
       report.termination = "FAILURE";
@@ -276,9 +293,16 @@ class CeresSolver : public Solver {
     if (options_.ordering != SolverOptions().ordering) {
       options.linear_solver_ordering = problem.Order(options_.ordering);
     }
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, problem.problem(), &summary);
-    FillReport(summary, options_.full_report, &report);
+    if (std::isfinite(initial_cost)) {
+      FillReport(problem.Solve(options), options_.full_report, &report);
+      if (!report.usable && !problem.NotFinite().empty()) {
+        report.message = problem.NotFinite();
+      }
+    } else {
+      report.termination = "FAILURE";
+      report.message = NotFiniteText(problem.terms(), initial);
+      report.parameters = problem.problem().NumParameters();
+    }
     // Ceres has -1 where it could not evaluate.
     if (!report.usable) report.initial_cost = initial_cost;
     report.terms = problem.Terms(initial, problem.TermCosts());

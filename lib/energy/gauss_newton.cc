@@ -109,7 +109,6 @@ class Minimization {
         problem_(input, graph),
         matrix_(problem_.MakeMatrix()),
         linear_solver_(linear(options)),
-        diagonal_(graph.size()),
         sought_(problem_.Start()),
         radius_(input.initial_radius > 0 ? input.initial_radius
                                          : options.initial_radius) {
@@ -119,9 +118,9 @@ class Minimization {
     report_.residuals = CountResiduals(problem_.terms());
     report_.initial_cost = report_.final_cost = problem_.Cost();
     report_.termination = finite ? "NO_CONVERGENCE" : "FAILURE";
-    report_.message = finite ? "Maximum number of iterations reached."
-                             : "The initial cost is not finite.";
     initial_costs_ = final_costs_ = problem_.TermCosts();
+    report_.message = finite ? "Maximum number of iterations reached."
+                             : NotFiniteText(problem_.terms(), final_costs_);
   }
 
   /// Iterates until a tolerance or the number of iterations is reached.
@@ -134,7 +133,7 @@ class Minimization {
         report_.message = "Maximum time reached.";
         return;
       }
-      LinearizeHere();
+      if (!LinearizeHere()) return Fail(problem_.NotFiniteAt(sought_));
       if (report_.iterations.back().gradient_max_norm <=
           options_.gradient_tolerance) {
         return Converge("Gradient below its tolerance.");
@@ -143,6 +142,9 @@ class Minimization {
       if (HasSettled(report_.iterations.back())) {
         return Converge("Change of the cost or step below its tolerance.");
       }
+    }
+    if (!why_not_taken_.empty()) {
+      report_.message += " The last step was not taken: " + why_not_taken_;
     }
   }
 
@@ -177,32 +179,36 @@ class Minimization {
     report_.message = message;
   }
 
+  void Fail(const std::string& message) {
+    report_.usable = false;
+    report_.termination = "FAILURE";
+    report_.message = message;
+  }
+
   /// Normal equations at what was reached, and, in the iteration that reached
-  /// it, the gradient there.
-  void LinearizeHere() {
-    if (linearized_) return;
+  /// it, the gradient there. False if they are not finite.
+  bool LinearizeHere() {
+    if (linearized_) return true;
     SolverIteration& reached = report_.iterations.back();
     const Stopwatch watch;
     if (reached.iteration > 0) EvaluateJacobians();
     const Stopwatch assembly;
     problem_.Assemble(&matrix_, &gradient_);
-    for (int i = 0; i < matrix_.nodes.size(); ++i) {
-      diagonal_[i] = matrix_.nodes.Diagonal(i).diagonal();
-    }
-    own_diagonal_ = matrix_.corner.diagonal();
+    diagonal_ = DiagonalOf(matrix_);
     linearized_ = true;
     report_.linear_solver_seconds += assembly.Seconds();
     reached.gradient_max_norm = MaxNorm(gradient_);
     reached.seconds += watch.Seconds();
+    return IsFinite(gradient_) && IsFinite(diagonal_);
   }
 
   /// Adds diag(J^T J) / radius, Ceres' Levenberg-Marquardt damping.
   void Damp() {
     for (int i = 0; i < matrix_.nodes.size(); ++i) {
       matrix_.nodes.Diagonal(i).diagonal() =
-          diagonal_[i] + Damping(diagonal_[i], radius_);
+          diagonal_.nodes[i] + Damping(diagonal_.nodes[i], radius_);
     }
-    matrix_.corner.diagonal() = own_diagonal_ + Damping(own_diagonal_, radius_);
+    matrix_.corner.diagonal() = diagonal_.own + Damping(diagonal_.own, radius_);
   }
 
   /// Solves (J^T J + D / radius) x = -J^T r.
@@ -246,6 +252,10 @@ class Minimization {
     const bool finite =
         usable && problem_.Evaluate(moved, /*with_jacobians=*/false);
     const double cost = problem_.Cost();
+    why_not_taken_ =
+        !usable  ? "its linear system could not be solved."
+        : finite ? ""
+                 : NotFiniteText(problem_.terms(), problem_.TermCosts());
     iteration->accepted = finite && cost <= report_.final_cost;
     iteration->cost_change = finite ? report_.final_cost - cost : 0;
     if (!iteration->accepted) {
@@ -272,12 +282,12 @@ class Minimization {
   BlockProblem problem_;
   BorderedMatrix matrix_;
   std::unique_ptr<LinearSolver> linear_solver_;
-  std::vector<Vector6> diagonal_;  // Of J^T J, without damping.
-  Eigen::VectorXd own_diagonal_;   // Likewise, of the terms' own unknowns.
-  std::vector<double> sought_;     // As BlockProblem::Start().
+  BorderedVector diagonal_;     // Of J^T J, without damping.
+  std::vector<double> sought_;  // As BlockProblem::Start().
   double radius_;
-  bool solved_ = false;      // Whether the last step is that of its system.
-  bool linearized_ = false;  // Whether matrix_ and gradient_ are at sought_.
+  std::string why_not_taken_;  // The last step; empty: its cost.
+  bool solved_ = false;        // Whether the last step is that of its system.
+  bool linearized_ = false;    // Whether matrix_ and gradient_ are at sought_.
   BorderedVector gradient_;
   BorderedVector step_;
   std::vector<double> initial_costs_;  // By term.

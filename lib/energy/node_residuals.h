@@ -48,6 +48,7 @@ class NodeResidualsOf : public NodeResiduals {
  public:
   /// Residuals of one tuple.
   static constexpr int kDims = Functor::kResiduals;
+  static_assert(kDims > 0, "a functor has one residual or more");
 
   /// `functors[i]` sees the twists of `nodes[i]`.
   NodeResidualsOf(std::vector<std::vector<int>> nodes,

@@ -61,6 +61,7 @@ class PointResidualsOf : public PointResiduals {
  public:
   /// Residuals of one point.
   static constexpr int kDims = PointFunctor::kResiduals;
+  static_assert(kDims > 0, "a functor has one residual or more");
 
   /// `functors[i]` belongs to point i of WarpedPoints.
   PointResidualsOf(std::vector<PointFunctor> functors, ResidualScaling scaling)
@@ -111,6 +112,7 @@ class PointResidualsWithUnknownsOf : public PointResiduals {
  public:
   /// Residuals of one point.
   static constexpr int kDims = PointFunctor::kResiduals;
+  static_assert(kDims > 0, "a functor has one residual or more");
   /// Unknowns of the term.
   static constexpr int kUnknowns = PointFunctor::kUnknowns;
 

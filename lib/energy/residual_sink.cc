@@ -9,10 +9,16 @@
 
 namespace splitfusion {
 
+void ResidualSink::DemandFirst(const char* member, bool called) {
+  if (!called) return;
+  throw InputError(std::string(member) + " twice: expected one call");
+}
+
 void ResidualSink::Count(std::size_t vectors, std::size_t functors,
                          double total) {
   CheckOption(functors == vectors, "functors of residuals", functors,
               "one for each of " + std::to_string(vectors));
+  CheckOption(total >= 0, "total of residuals", total, "0 or more");
   residual_vectors_ = static_cast<int>(vectors);
   total_ = total > 0 ? total : static_cast<double>(vectors);
 }

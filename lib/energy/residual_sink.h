@@ -53,20 +53,24 @@ class ResidualSink {
   /// by (const T* warped_point, const T* unknowns, T* residual).
   ///
   /// @throw InputError unless there is a functor for every sample, and every
-  ///     sample is carried by nodes of the graph, ascending; OptionError if a
-  ///     functor has other unknowns than the term declares.
+  ///     sample is carried by nodes of the graph, ascending; if `total` is
+  ///     below 0 or not finite, or at the second call; OptionError if a functor
+  ///     has other unknowns than the term declares.
   template <typename PointFunctor>
   void AddWarpedPoints(const std::vector<const ModelSample*>& samples,
                        const std::vector<PointFunctor>& functors,
                        double total = 0) {
+    DemandFirst("AddWarpedPoints()", has_points_);
     Count(samples.size(), functors.size(), total);
-    if (samples.empty()) return;
-    std::vector<PointFunctor> ordered;
-    ordered.reserve(functors.size());
-    for (const int i : SetPoints(samples)) {
-      ordered.push_back(functors[i]);
+    if (!samples.empty()) {
+      std::vector<PointFunctor> ordered;
+      ordered.reserve(functors.size());
+      for (const int i : SetPoints(samples)) {
+        ordered.push_back(functors[i]);
+      }
+      residuals_.of_points = MakePointResiduals(std::move(ordered));
     }
-    residuals_.of_points = MakePointResiduals(std::move(ordered));
+    has_points_ = true;
   }
 
   /// Adds one residual vector per tuple of different nodes; `functors[i]` sees
@@ -74,15 +78,19 @@ class ResidualSink {
   /// metres. Plain autodiff; `total`: N, as of AddWarpedPoints(). Call it once.
   ///
   /// @throw InputError unless there is a functor for every tuple, and every
-  ///     tuple has nodes of the graph, none of them twice.
+  ///     tuple has nodes of the graph, none of them twice; as AddWarpedPoints()
+  ///     on `total` and the second call.
   template <typename Functor>
   void AddNodes(const std::vector<std::vector<int>>& nodes,
                 const std::vector<Functor>& functors, double total = 0) {
+    DemandFirst("AddNodes()", has_nodes_);
     Count(nodes.size(), functors.size(), total);
-    if (nodes.empty()) return;
-    CheckTuples(nodes);
-    residuals_.of_nodes =
-        std::make_shared<NodeResidualsOf<Functor>>(nodes, functors, Scaling());
+    if (!nodes.empty()) {
+      CheckTuples(nodes);
+      residuals_.of_nodes = std::make_shared<NodeResidualsOf<Functor>>(
+          nodes, functors, Scaling());
+    }
+    has_nodes_ = true;
   }
 
   /// Adds one residual vector of the term's own unknowns alone per functor,
@@ -91,10 +99,14 @@ class ResidualSink {
   /// is that of the residuals added before, if there are any: each weighs as
   /// much as one of these of weight 1. Call it once.
   ///
-  /// @throw OptionError if it has others than the term declares.
+  /// @throw OptionError if it has others than the term declares; InputError at
+  ///     the second call.
   template <typename Functor>
   void AddUnknowns(const std::vector<Functor>& functors) {
+    DemandFirst("AddUnknowns()", has_unknowns_);
     CheckUnknowns(Functor::kUnknowns);
+    has_unknowns_ = true;
+    if (functors.empty()) return;
     const double own = static_cast<double>(functors.size());
     residuals_.of_unknowns = std::make_shared<UnknownResidualsOf<Functor>>(
         functors, scales_, Units(total_ > 0 ? total_ : own));
@@ -106,6 +118,9 @@ class ResidualSink {
   const TermResiduals& residuals() const { return residuals_; }
 
  private:
+  /// @throw InputError at the second call of a member.
+  static void DemandFirst(const char* member, bool called);
+
   void CheckTuples(const std::vector<std::vector<int>>& nodes) const;
 
   template <typename PointFunctor>
@@ -139,6 +154,9 @@ class ResidualSink {
   const TermOptions& options_;
   WarpedPointsCache* cache_;
   std::vector<double> scales_;  // Of the unknowns.
+  bool has_points_ = false;
+  bool has_nodes_ = false;
+  bool has_unknowns_ = false;
   int residual_vectors_ = 0;
   double total_ = 0;  // N of the normalisation.
   TermResiduals residuals_;

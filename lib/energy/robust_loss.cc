@@ -50,9 +50,9 @@ std::unique_ptr<ceres::LossFunction> MakeLoss(LossKind kind, double scale) {
     case LossKind::kCauchy:
       return std::make_unique<ceres::CauchyLoss>(scale);
     case LossKind::kTrivial:
-      break;
+      return std::make_unique<ceres::TrivialLoss>();
   }
-  return std::make_unique<ceres::TrivialLoss>();
+  return nullptr;
 }
 
 }  // namespace splitfusion

@@ -22,7 +22,7 @@ LossKind ParseLoss(const std::string& name);
 std::string ToString(LossKind kind);
 
 /// Ceres' loss of that kind with inlier width `scale`, in units of the residual
-/// it is applied to.
+/// it is applied to. Null if there is none of that kind.
 std::unique_ptr<ceres::LossFunction> MakeLoss(LossKind kind, double scale);
 
 }  // namespace splitfusion

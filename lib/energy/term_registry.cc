@@ -1,8 +1,6 @@
 #include "splitfusion/lib/energy/term_registry.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
 #include <set>
 #include <utility>
 
@@ -10,19 +8,11 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/energy/term_call.h"
+#include "splitfusion/lib/energy/term_unknowns.h"
 
 namespace splitfusion {
 namespace {
-
-/// Names stand in texts like "name(key=value)".
-void CheckName(const std::string& what, const std::string& name) {
-  const bool good =
-      !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
-      });
-  CheckOption(good, what + " of a term", name.empty() ? "''" : name,
-              "letters, digits and _");
-}
 
 /// The keys of a term: weight, loss and scale, then those of its own.
 class TermKeys {
@@ -76,7 +66,7 @@ class TermKeys {
                  "Robust loss of every residual vector.");
     list->Number("scale", &term_->options.scale, Range::Above(0), "metres",
                  "Inlier width of the loss.");
-    term_->term->List(list);
+    CallTerm(term_->options.name, "List()", [&] { term_->term->List(list); });
   }
 
  private:
@@ -85,26 +75,16 @@ class TermKeys {
   OptionList list_;
 };
 
-/// @throw InputError on unknowns that a term must not declare.
-void CheckUnknowns(const WeightedTerm& term) {
-  std::set<std::string> names;
-  for (const Unknown& unknown : term.term->Unknowns()) {
-    CheckName("unknown", unknown.name);
-    const std::string name = term.options.name + "." + unknown.name;
-    CheckOption(names.insert(unknown.name).second, "unknown of a term", name,
-                "names that differ");
-    CheckOption(std::isfinite(unknown.initial), "initial of unknown " + name,
-                unknown.initial, "a finite number");
-    CheckOption(std::isfinite(unknown.scale) && unknown.scale > 0,
-                "scale of unknown " + name, unknown.scale, "a number above 0");
-  }
-}
+}  // namespace
 
 WeightedTerm MakeTerm(const std::string& name, const TermRegistry& registry) {
+  registry.Check(name);
+  CheckName("name", name);
   WeightedTerm term;
   term.options.name = name;
-  term.term = registry.Make(name);
-  CheckName("name", name);
+  term.term = CallTerm(name, "its factory", [&] {
+    return std::shared_ptr<EnergyTerm>(registry.Make(name));
+  });
   if (term.term == nullptr) {
     throw InputError("term '" + name + "': its factory made nothing");
   }
@@ -112,7 +92,23 @@ WeightedTerm MakeTerm(const std::string& name, const TermRegistry& registry) {
   return term;
 }
 
-}  // namespace
+void CheckTerm(const WeightedTerm& term) {
+  // Squares of the scale are taken, in units of 1 cm.
+  constexpr double kLeastScale = 1e-100, kLargestScale = 1e100;  // Maths.
+  const TermOptions& options = term.options;
+  if (term.term == nullptr) {
+    throw InputError("term '" + options.name + "': expected a term, not null");
+  }
+  CheckOption(options.weight >= 0, options.name + ".weight", options.weight,
+              ">= 0");
+  if (options.loss == LossKind::kTrivial) return;
+  const std::string loss = ToString(options.loss);
+  CheckOption(MakeLoss(options.loss, 1) != nullptr, options.name + ".loss",
+              loss, AnyOf(LossNames()));
+  CheckOption(options.scale >= kLeastScale && options.scale <= kLargestScale,
+              options.name + ".scale", options.scale,
+              "metres 1e-100..1e100 with loss " + loss);
+}
 
 Energy MakeEnergy(const std::vector<TermText>& terms,
                   const TermRegistry& registry) {
@@ -139,8 +135,9 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry) {
 
 void CheckEnergy(const Energy& energy) {
   for (WeightedTerm term : energy) {
+    CheckTerm(term);
     TermKeys(&term).Check();
-    CheckUnknowns(term);
+    DeclaredUnknowns(term);
   }
   const bool any = std::any_of(
       energy.begin(), energy.end(),
@@ -184,13 +181,13 @@ void SetTermOption(const std::string& key, const std::string& value,
 
 std::map<std::string, std::string> TermOptionValues(const Energy& energy) {
   std::map<std::string, std::string> values;
+  std::map<std::string, int> counts;
   for (WeightedTerm term : energy) {
     const TermKeys keys(&term);
     // The same term twice: the second one is "arap.2".
     std::string name = term.options.name;
-    for (int i = 2; values.count(name + ".weight") > 0; ++i) {
-      name = term.options.name + "." + std::to_string(i);
-    }
+    const int count = ++counts[name];
+    if (count > 1) name += "." + std::to_string(count);
     for (const Option& option : keys.all()) {
       values[name + "." + keys.KeyOf(option)] = option.ValueText();
     }
@@ -207,7 +204,7 @@ std::string TermsHelp(const TermRegistry& registry) {
     WeightedTerm term = MakeTerm(name, registry);
     text += name + "\n";
     OptionList own;
-    term.term->List(&own);
+    CallTerm(name, "List()", [&] { term.term->List(&own); });
     for (const Option& option : own.options()) {
       text += "  " + option.name + " = " + option.ValueText() + " (" +
               option.Expected() + ")\n      " + option.help + "\n";

@@ -42,6 +42,18 @@ Energy ParseEnergy(const std::string& text, const TermRegistry& registry);
 Energy MakeEnergy(const std::vector<TermText>& terms,
                   const TermRegistry& registry);
 
+/// A term with its defaults.
+///
+/// @throw InputError if none of that name is registered, or it is not what a
+///     term must be: its name, its keys, or their defaults.
+WeightedTerm MakeTerm(const std::string& name, const TermRegistry& registry);
+
+/// Checks what any code may have set, and no parser has read.
+///
+/// @throw InputError if there is no term, or weight, loss or scale are out of
+///     their ranges.
+void CheckTerm(const WeightedTerm& term);
+
 /// @throw InputError if no term has a weight: nothing would be minimised; or
 ///     on unknowns of a term without a name, of one name, or with values that
 ///     are none.

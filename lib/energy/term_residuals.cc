@@ -1,8 +1,11 @@
 #include "splitfusion/lib/energy/term_residuals.h"
 
+#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/energy/term_call.h"
 #include "splitfusion/lib/energy/term_unknowns.h"
 #include "splitfusion/lib/energy/twist.h"
 #include "splitfusion/lib/energy/warped_points.h"
@@ -10,6 +13,12 @@
 namespace splitfusion {
 
 std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
+                                          const DeformationGraph& graph) {
+  return CollectResiduals(problem, TermUnknowns(problem), graph);
+}
+
+std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
+                                          const TermUnknowns& unknowns,
                                           const DeformationGraph& graph) {
   EnergyInput input{graph,          problem.correspondences, problem.camera,
                     problem.live,   problem.before,          problem.anneal,
@@ -22,9 +31,9 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
     const WeightedTerm& weighted = problem.energy[i];
     input.options = &weighted.options;
     input.state = states == nullptr ? nullptr : states->Find(problem.energy, i);
-    ResidualSink sink(weighted.options, &cache,
-                      ScalesOf(weighted.term->Unknowns()));
-    weighted.term->AddResiduals(input, &sink);
+    ResidualSink sink(weighted.options, &cache, unknowns.ScalesOf(i));
+    CallTerm(weighted.options.name, "AddResiduals()",
+             [&] { weighted.term->AddResiduals(input, &sink); });
     ProblemTerm term;
     term.cost.term = weighted.options.name;
     term.cost.residual_vectors = sink.residual_vectors();
@@ -32,6 +41,16 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
     terms.push_back(std::move(term));
   }
   return terms;
+}
+
+std::string NotFiniteText(const std::vector<ProblemTerm>& terms,
+                          const std::vector<double>& costs) {
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (std::isfinite(costs[i])) continue;
+    return "The cost of term '" + terms[i].cost.term + "' is not finite.";
+  }
+  const double sum = std::accumulate(costs.begin(), costs.end(), 0.0);
+  return std::isfinite(sum) ? "" : "The cost of all terms is not finite.";
 }
 
 int CountResiduals(const std::vector<ProblemTerm>& terms) {

@@ -1,12 +1,15 @@
 #ifndef SPLITFUSION_LIB_ENERGY_TERM_RESIDUALS_H_
 #define SPLITFUSION_LIB_ENERGY_TERM_RESIDUALS_H_
 
+#include <string>
 #include <vector>
 
 #include "splitfusion/lib/energy/residual_sink.h"
 #include "splitfusion/lib/energy/solver.h"
 
 namespace splitfusion {
+
+class TermUnknowns;
 
 /// One term of a problem.
 struct ProblemTerm {
@@ -17,8 +20,22 @@ struct ProblemTerm {
 
 /// Asks every term of the energy for its residuals at the graph's motions; what
 /// all solvers start from.
+///
+/// @throw InputError if a term is not what it must be, or adds what it must
+/// not;
+///     std::runtime_error of anything else that it throws. Both name it.
 std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
                                           const DeformationGraph& graph);
+
+/// The same, where the terms' own unknowns are known; those of the problem.
+std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
+                                          const TermUnknowns& unknowns,
+                                          const DeformationGraph& graph);
+
+/// A sentence on the first term whose cost is not finite, or on the sum of all
+/// if that is not; empty if all are. `costs`: of `terms`.
+std::string NotFiniteText(const std::vector<ProblemTerm>& terms,
+                          const std::vector<double>& costs);
 
 /// Number of scalar residuals of all terms.
 int CountResiduals(const std::vector<ProblemTerm>& terms);

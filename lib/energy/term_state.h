@@ -4,11 +4,13 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <typeindex>
 
 #include "splitfusion/lib/energy/term_registry.h"
 
 namespace splitfusion {
 
+class EnergyTerm;
 struct EnergyInput;
 
 /// What a term keeps of one surface, from frame to frame or for the rounds of
@@ -30,7 +32,11 @@ class TermState {
 class TermStates {
  public:
   /// Prepares the states of all terms that have one for the rounds of a frame,
-  /// see EnergyTerm::Prepare(); new ones are made.
+  /// see EnergyTerm::Prepare(); new ones are made, also where a term of another
+  /// class had the name before.
+  ///
+  /// @throw InputError or std::runtime_error if a term or a state throws; names
+  ///     the term.
   void Prepare(const Energy& energy, const EnergyInput& input);
 
   /// That of the i-th term of an energy; null if it has none.
@@ -48,9 +54,17 @@ class TermStates {
   }
 
  private:
+  /// The state of a term, made if it is none of its class; null if it has none.
+  TermState* Keep(const std::string& name, const EnergyTerm& term);
   std::map<std::string, std::string> Save() const;
 
-  std::map<std::string, std::unique_ptr<TermState>> states_;  // By NameOf().
+  /// Null, or made by a term of this class.
+  struct Kept {
+    std::type_index of;
+    std::unique_ptr<TermState> state;
+  };
+
+  std::map<std::string, Kept> states_;  // By NameOf().
   /// Restored, of terms that have not been prepared since.
   std::map<std::string, std::string> saved_;
 };

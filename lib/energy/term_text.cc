@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/quoted.h"
 #include "splitfusion/lib/base/text_file.h"
 
 namespace splitfusion {
@@ -31,13 +32,31 @@ void SplitOptions(const std::string& text, TermText* term) {
       throw InputError("--terms: '" + pair + "' in term '" + term->name +
                        "': expected key=value");
     }
-    term->options.emplace_back(Trimmed(pair.substr(0, equals)),
-                               Trimmed(pair.substr(equals + 1)));
+    const std::string key = Trimmed(pair.substr(0, equals));
+    const auto& options = term->options;
+    if (std::any_of(options.begin(), options.end(),
+                    [&](const auto& option) { return option.first == key; })) {
+      throw InputError("--terms: key '" + key + "' stands twice in term '" +
+                       term->name + "': expected each key once");
+    }
+    term->options.emplace_back(key, Trimmed(pair.substr(equals + 1)));
     begin = end + 1;
   }
 }
 
 }  // namespace
+
+void CheckName(const std::string& what, const std::string& name) {
+  std::size_t end = 0;
+  const bool good = !name.empty() && TakeWord(name, &end) == name;
+  if (good) return;
+  const bool is_plain =
+      !name.empty() &&
+      std::none_of(name.begin(), name.end(),
+                   [](unsigned char c) { return std::iscntrl(c) != 0; });
+  throw OptionError(what + " of a term", is_plain ? name : Quoted(name),
+                    "letters, digits and _");
+}
 
 std::vector<TermText> SplitTerms(const std::string& text) {
   std::vector<TermText> terms;

@@ -19,8 +19,15 @@ struct TermText {
 /// The entries of a text, in their order. It ends with one that has no name if
 /// a name is missing.
 ///
-/// @throw InputError if a bracket is not closed, or an option is no key=value.
+/// @throw InputError if a bracket is not closed, an option is no key=value, or
+/// a
+///     key stands twice in one bracket.
 std::vector<TermText> SplitTerms(const std::string& text);
+
+/// Names stand in texts like `name(key=value)`.
+///
+/// @throw OptionError unless it is of letters, digits and _; `what`: is named.
+void CheckName(const std::string& what, const std::string& name);
 
 }  // namespace splitfusion
 

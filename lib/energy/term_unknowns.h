@@ -8,12 +8,18 @@
 
 namespace splitfusion {
 
+/// What a term declares.
+///
+/// @throw InputError on unknowns without a name, of one name, with values that
+///     are none, or too many of them.
+std::vector<Unknown> DeclaredUnknowns(const WeightedTerm& term);
+
 /// The own unknowns of all terms of a problem, one after the other in order of
 /// the energy. Solvers seek each in units of its scale.
 class TermUnknowns {
  public:
-  /// @throw OptionError if the problem has values for others than its terms
-  ///     declare.
+  /// @throw InputError as DeclaredUnknowns(), and if the problem has values for
+  ///     others than its terms declare, or such that are not finite.
   explicit TermUnknowns(const SurfaceProblem& problem);
 
   /// Number of all unknowns.
@@ -22,6 +28,9 @@ class TermUnknowns {
   int first(std::size_t term) const { return first_[term]; }
   /// Number of a term's unknowns.
   int count(std::size_t term) const { return first_[term + 1] - first_[term]; }
+
+  /// Scales of a term's unknowns.
+  std::vector<double> ScalesOf(std::size_t term) const;
 
   /// What is sought, where the minimisation begins.
   std::vector<double> Start() const;
@@ -35,9 +44,6 @@ class TermUnknowns {
   std::vector<double> scales_;
   std::vector<int> first_;  // By term.
 };
-
-/// Scales of a term's unknowns.
-std::vector<double> ScalesOf(const std::vector<Unknown>& unknowns);
 
 }  // namespace splitfusion
 

@@ -2,41 +2,96 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/quoted.h"
+#include "splitfusion/lib/energy/energy_term.h"
+#include "splitfusion/lib/energy/term_call.h"
+#include "splitfusion/lib/energy/term_unknowns.h"
+#include "splitfusion/lib/energy/terms_library_file.h"
 
 namespace splitfusion {
 
-void LoadTermsLibrary(const std::string& path, TermRegistry* terms) {
+namespace {
+
+using AddTerms = void (*)(TermRegistry*);
+
+[[noreturn]] void Refuse(const std::string& path, const std::string& why) {
+  throw InputError("--terms_library: " + path + ": " + why);
+}
+
+/// The function that adds the terms of a library.
+AddTerms Open(const std::string& path) {
   namespace fs = std::filesystem;
-  const auto refuse = [&](const std::string& why) {
-    throw InputError("--terms_library: " + path + ": " + why);
-  };
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) refuse("expected a shared library");
-  // It is never closed: terms that it makes live on.
+  if (!fs::is_regular_file(path, error)) {
+    Refuse(path, "expected a shared library");
+  }
+  const std::string cut_off = WhyCutOff(path);
+  if (!cut_off.empty()) Refuse(path, cut_off);
+  // What its constructors do, too, is to be told of it. It is never closed:
+  // terms that it makes live on.
+  const TermCall loading(path, "its library");
   void* library = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
-    refuse(std::string("cannot be loaded: ") + dlerror());
+    Refuse(path, std::string("cannot be loaded: ") + dlerror());
   }
-  const auto* build =
-      static_cast<const char*>(dlsym(library, "SplitFusionTermsBuild"));
-  using Add = void (*)(TermRegistry*);
-  const auto add = reinterpret_cast<Add>(dlsym(library, "SplitFusionAddTerms"));
+  const void* build = dlsym(library, "SplitFusionTermsBuild");
+  void* add = dlsym(library, "SplitFusionAddTerms");
   if (build == nullptr || add == nullptr) {
-    refuse("expected a library with SPLITFUSION_TERMS_LIBRARY(...)");
+    Refuse(path, "expected a library with SPLITFUSION_TERMS_LIBRARY(...)");
   }
-  if (build != std::string(SPLITFUSION_BUILD)) {
-    refuse("built with " + std::string(build) +
-           ": expected " SPLITFUSION_BUILD);
+  const std::string text = SymbolText(build);
+  if (text != SPLITFUSION_BUILD) {
+    // A text of this kind, or whatever lies there.
+    const bool is_one = text.rfind("splitfusion ", 0) == 0;
+    Refuse(path, "built with " + (is_one ? text : Quoted(text)) +
+                     ": expected " SPLITFUSION_BUILD);
   }
+  return reinterpret_cast<AddTerms>(add);
+}
+
+/// The names that a library has added.
+///
+/// @throw InputError if there are none, or others are gone.
+std::vector<std::string> NewNames(const TermRegistry& before,
+                                  const TermRegistry& after) {
+  const std::vector<std::string> old = before.names(), all = after.names();
+  const auto kept =
+      std::mismatch(old.begin(), old.end(), all.begin(), all.end());
+  if (kept.first != old.end()) {
+    throw InputError("has removed term '" + *kept.first +
+                     "': expected terms that are added");
+  }
+  if (kept.second == all.end()) {
+    throw InputError("adds no term: expected one or more");
+  }
+  return {kept.second, all.end()};
+}
+
+}  // namespace
+
+void LoadTermsLibrary(const std::string& path, TermRegistry* terms) {
+  const AddTerms add = Open(path);
+  // Of a library that is refused nothing is kept.
+  TermRegistry with = *terms;
+  const TermCall adding(path, "its library");
   try {
-    add(terms);
-  } catch (const InputError& clash) {
-    refuse(clash.what());
+    add(&with);
+    for (const std::string& name : NewNames(*terms, with)) {
+      DeclaredUnknowns(MakeTerm(name, with));
+    }
+  } catch (const std::exception& error) {
+    Refuse(path, error.what());
+  } catch (...) {
+    Refuse(path, "threw what is no std::exception");
   }
+  *terms = std::move(with);
 }
 
 std::vector<std::string> LoadTermsLibraries(const std::string& list,

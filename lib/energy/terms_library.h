@@ -39,11 +39,14 @@
 namespace splitfusion {
 
 /// Loads a shared library of terms, for the rest of the program, and registers
-/// them. Nothing in it is called unless its SPLITFUSION_BUILD is that of the
-/// program.
+/// them; each is made once to see that it can be. Nothing in it is called
+/// unless its SPLITFUSION_BUILD is that of the program, but for what runs when
+/// it is loaded.
 ///
-/// @throw InputError if the file cannot be loaded, is no such library, was
-///     built with something else, or has a term of a name that is taken.
+/// @throw InputError if the file is cut off or cannot be loaded, is no such
+///     library, was built with something else, adds no term, one of a name that
+///     is taken or one that is refused by MakeTerm(), removes any, or throws.
+///     `terms` are then what they were.
 void LoadTermsLibrary(const std::string& path, TermRegistry* terms);
 
 /// The same of several, FILE,FILE,...; returns their paths. Empty text: none.

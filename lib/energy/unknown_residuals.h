@@ -35,6 +35,7 @@ class UnknownResidualsOf : public UnknownResiduals {
  public:
   /// Residuals of one functor.
   static constexpr int kDims = Functor::kResiduals;
+  static_assert(kDims > 0, "a functor has one residual or more");
   /// Unknowns of the term.
   static constexpr int kUnknowns = Functor::kUnknowns;
 
