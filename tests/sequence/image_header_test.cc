@@ -114,7 +114,7 @@ TEST_F(ImageHeaderTest, OrientationsAreIgnored) {
   // Exif: one entry, orientation (0x112) = 6, a turn by 90 degrees.
   bytes.insert(2, Segment(std::string("Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0"
                                       "\x03\0\0\0\x01\0\x06\0\0\0\0\0\0",
-                                      34)));
+                                      32)));
   folder_.Write("a.jpg", bytes);
   ASSERT_EQ(cv::imread(folder_ / "a.jpg").size(), cv::Size(24, 32));
   EXPECT_EQ(ReadColorImage(folder_ / "a.jpg").size(), cv::Size(32, 24));

@@ -236,20 +236,22 @@ TEST_F(SfBatch, ADryRunPrintsTheTasks) {
   EXPECT_FALSE(folder_.Has("out"));
 }
 
-TEST_F(SfBatch, TakesTheAblationFile) {
-  const auto file = RepositoryRoot() / "tools/ablation.json";
-  if (!std::filesystem::exists(file) || !HasProgram("sf_run") ||
-      !HasProgram("sf_synth")) {
+TEST_F(SfBatch, TakesTheExperimentsOfTheToolkit) {
+  const auto tools = RepositoryRoot() / "tools";
+  if (!std::filesystem::exists(tools / "ablation.json") ||
+      !HasProgram("sf_run") || !HasProgram("sf_synth")) {
     GTEST_SKIP() << "not built in the repository, or without its programs";
   }
   RunProgram("sf_synth", "--width=160 --height=120 --frames=2 --output=" +
                              (folder_ / "sequence"));
-  const ProgramResult result = RunProgram(
-      "sf_batch", "run --experiment=" + file.string() +
-                      " --sequences=" + (folder_ / "sequence") +
-                      " --output=" + (folder_ / "out") + " --dry_run");
-  EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output, HasSubstr(" new\n"));
+  for (const char* file : {"ablation.json", "terms.json"}) {
+    const ProgramResult result = RunProgram(
+        "sf_batch", "run --experiment=" + (tools / file).string() +
+                        " --sequences=" + (folder_ / "sequence") +
+                        " --output=" + (folder_ / "out") + " --dry_run");
+    EXPECT_EQ(result.exit_code, 0) << file << result.errors;
+    EXPECT_THAT(result.output, HasSubstr(" new\n")) << file;
+  }
 }
 
 TEST_F(SfBatch, AnAblationComparesItsRowsAndKeepsThem) {
