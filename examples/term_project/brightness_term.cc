@@ -1,4 +1,4 @@
-// A shared library with one energy term that estimates a number beside the
+// A shared library with one energy term that estimates numbers beside the
 // motions:
 //   sf_run --terms_library=libbrightness.so --set="terms.brightness.weight=1"
 
@@ -17,15 +17,17 @@ namespace {
 constexpr double kMetres = 0.05;
 
 /// Grey value of the live image at a warped model point x, against the model's
-/// times a gain g that all points of the surface share:
+/// times a gain g, plus an offset b, which all points of the surface share:
 ///
-///   r = m sqrt(c) [ I(pi(x)) - g I_m ],   I(pi(x)) = I_0 + grad I . (pi(x) -
-///   u)
+///   r = m sqrt(c) [ I(pi(x)) - g I_m - b ]
+///   I(pi(x)) = I_0 + grad I . (pi(x) - u)
 ///
+/// The association has taken the median difference of the grey values out of
+/// I_0. Without b, which puts it back, g would stay at 1 whatever the exposure.
 /// Residual: 1, metres * sqrt(confidence).
 struct Brightness {
   static constexpr int kResiduals = 1;
-  static constexpr int kUnknowns = 1;
+  static constexpr int kUnknowns = 2;
   Eigen::Vector2d focal;     ///< (fx, fy), pixels.
   Eigen::Vector2d from;      ///< (cx, cy) - u, pixels.
   Eigen::Vector2d gradient;  ///< grad I, 1 / pixel.
@@ -33,10 +35,10 @@ struct Brightness {
   double model;              ///< I_m, 0..1.
   double scale;              ///< m sqrt(c), metres.
 
-  /// `x`: warped point, camera frame, metres; `unknowns`: g.
+  /// `x`: warped point, camera frame, metres; `unknowns`: g and b.
   template <typename T>
   bool operator()(const T* x, const T* unknowns, T* residual) const {
-    T grey = T(live) - unknowns[0] * T(model);
+    T grey = T(live) - unknowns[0] * T(model) - unknowns[1];
     for (int d = 0; d < 2; ++d) {
       grey += T(gradient[d]) * (T(focal[d]) * x[d] / x[2] + T(from[d]));
     }
@@ -45,14 +47,16 @@ struct Brightness {
   }
 };
 
-/// Prior of the gain: one more point of confidence 1 that sees it as 1.
-struct GainPrior {
-  static constexpr int kResiduals = 1;
-  static constexpr int kUnknowns = 1;
+/// Prior: two more points of confidence 1, one that sees the gain as 1 and one
+/// that sees the offset as 0.
+struct Prior {
+  static constexpr int kResiduals = 2;
+  static constexpr int kUnknowns = 2;
 
   template <typename T>
   bool operator()(const T* unknowns, T* residual) const {
     residual[0] = T(kMetres) * (unknowns[0] - T(1));
+    residual[1] = T(kMetres) * unknowns[1];
     return true;
   }
 };
@@ -60,7 +64,8 @@ struct GainPrior {
 class BrightnessTerm : public splitfusion::EnergyTerm {
  public:
   std::vector<splitfusion::Unknown> Unknowns() const override {
-    return {{"gain", /*unit=*/"", /*initial=*/1}};
+    return {{"gain", /*unit=*/"", /*initial=*/1},
+            {"offset", /*unit=*/"", /*initial=*/0}};
   }
 
   void AddResiduals(const splitfusion::EnergyInput& input,
@@ -77,7 +82,7 @@ class BrightnessTerm : public splitfusion::EnergyTerm {
                   kMetres * std::sqrt(c.weight)};
         },
         sink);
-    sink->AddUnknowns(std::vector<GainPrior>(1));
+    sink->AddUnknowns(std::vector<Prior>(1));
   }
 };
 
