@@ -441,7 +441,7 @@ void SplitFusion::AddNewSurfaces(const Frame& frame, FrameReport* report) {
     if (id != 0) {
       splitter_.mutable_track(id)->Apply(TrackEvent::kFits);
       Surface& background = *surfaces_.at(0);
-      // Until it moved it was background.
+      // What was fused of it before it was told apart.
       if (kind == SurfaceKind::kRigid && background.is_ray_cast()) {
         background.ForgetOther(live_, id);
       }

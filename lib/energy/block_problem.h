@@ -40,7 +40,7 @@ class BlockProblem {
   /// not finite.
   ///
   /// @throw InputError or std::runtime_error if a functor throws; names the
-  /// term.
+  ///     term.
   bool Evaluate(const std::vector<double>& sought, bool with_jacobians);
 
   /// Cost as evaluated last.

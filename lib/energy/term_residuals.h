@@ -22,8 +22,7 @@ struct ProblemTerm {
 /// all solvers start from.
 ///
 /// @throw InputError if a term is not what it must be, or adds what it must
-/// not;
-///     std::runtime_error of anything else that it throws. Both name it.
+///     not; std::runtime_error of anything else that it throws. Both name it.
 std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
                                           const DeformationGraph& graph);
 

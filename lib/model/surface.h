@@ -74,7 +74,9 @@ class Surface {
   /// canonical frame (metres), of a rigid surface: it is not of this one.
   void Forget(const std::vector<Eigen::Vector3f>& places);
 
-  /// Forgets, of a rigid surface, what the live pixels of another one show.
+  /// Forgets, of a rigid surface, what was fused within the truncation from the
+  /// points that live pixels of the surface `other` show for sure
+  /// (IsCertain()), under the current motion.
   void ForgetOther(const LiveView& live, int other);
 
   /// Extracts the canonical mesh; its graph follows it.

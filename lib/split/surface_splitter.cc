@@ -54,6 +54,11 @@ bool BackgroundFits(const std::vector<Candidate>& candidates,
   return same >= kMinFit * cv::countNonZero(open);
 }
 
+/// Whether more than half of a mask's pixels are among those of `pixels`.
+bool IsMostlyOn(const cv::Mat_<uchar>& pixels, const cv::Mat_<uchar>& mask) {
+  return 2 * cv::countNonZero(pixels & mask) > cv::countNonZero(mask);
+}
+
 Segment MakeSegment(const Candidate& candidate, const Match& match) {
   Segment segment;
   segment.surface = match.surface;
@@ -200,12 +205,10 @@ cv::Mat_<uchar> SurfaceSplitter::WatchObjects(
   }
   const cv::Mat_<uchar> in_front =
       input.compared.background == static_cast<int>(DepthState::kOccluded);
-  const cv::Mat_<uchar> elsewhere = in_front | (input.compared.labels > 0);
   for (Candidate& candidate : *candidates) {
-    const cv::Mat_<uchar> seen = candidate.mask & (input.frame.depth > 0);
-    candidate.apart =
-        objects_.IsWatched(candidate) &&
-        2 * cv::countNonZero(seen & elsewhere) > cv::countNonZero(seen);
+    candidate.apart = objects_.IsWatched(candidate) &&
+                      IsMostlyOn(in_front | (input.compared.labels > 0),
+                                 candidate.mask & (input.frame.depth > 0));
   }
   return objects_.Watch({input.frame.index, input.frame.depth, input.points,
                          input.prior.world_from_camera, claimed, in_front},
