@@ -45,7 +45,8 @@ class ProjectiveDepthTerm : public EnergyTerm {
     AddCorrespondenceResiduals(
         input.correspondences,
         [](const Correspondence& c) -> ProjectiveDepth {
-          return {c.target_normal.cast<double>(), c.target_normal.dot(c.target),
+          const Eigen::Vector3d normal = c.target_normal.cast<double>();
+          return {normal, normal.dot(c.target.cast<double>()),
                   std::sqrt(c.weight)};
         },
         sink);

@@ -37,19 +37,23 @@ struct PipelineOptions {
   /// Ray casting of the background.
   RayCastOptions ray_cast;
   /// The energy of what deforms, and of what may have come from far away;
-  /// syntax of ParseEnergy.
+  /// syntax of ParseEnergy. Its data term is along the view ray, as the
+  /// noise of the depth is.
   static constexpr const char* kDeformingTerms =
-      "point_to_plane(weight=1,loss=tukey,scale=0.03) "
+      "projective_depth(weight=1,loss=tukey,scale=0.03) "
       "color(weight=8,loss=huber,scale=0.01) "
       "live_to_model(weight=1,loss=huber,scale=0.013) "
       "tracks(weight=16,loss=huber,scale=0.01) arap(weight=8) "
       "temporal_arap(weight=8)";
-  /// Eq. 4; syntax of SurfaceEnergies::Parse. Tukey's loss of the background
+  /// Eq. 4; syntax of SurfaceEnergies::Parse. Of the background Eq. 5: errors
+  /// of a real room's map are not along the ray of today. Its loss, Tukey's,
   /// ends at 4.7 standard deviations of the depth noise (3 mm at its
   /// reference), where it is 95 % as efficient as least squares: what moves and
   /// is no surface yet is left out.
   std::string terms =
-      std::string(kDeformingTerms) + " background.point_to_plane(scale=0.014)";
+      std::string(kDeformingTerms) +
+      " background.projective_depth(weight=0) "
+      "background.point_to_plane(weight=1,loss=tukey,scale=0.014)";
   int render_stride = 2;       ///< Model maps hold every n-th pixel.
   bool split_scene = true;     ///< False: one surface holds the whole scene.
   bool model_objects = true;   ///< False: moving things are only cut out.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/base/any_of.h"
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/archive_file.h"
@@ -114,6 +115,7 @@ bool SequenceRun::Resume() {
     directory_.reset();
     done_ = 0;
     coarse_.clear();
+    heard_terms_.clear();
     warned_of_depth_ = false;
     folder_.StartAfresh(std::string("begins anew: ") + error.what());
     return false;
@@ -137,7 +139,8 @@ void SequenceRun::StartFromOther() {
 /// All that later frames and results depend on.
 template <typename Archive>
 void SequenceRun::Serialize(Archive* archive) {
-  (*archive)(done_, coarse_, warned_of_depth_, work_->fusion, *directory_);
+  (*archive)(done_, coarse_, heard_terms_, warned_of_depth_, work_->fusion,
+             *directory_);
 }
 
 /// The state alone, without what this run reported.
@@ -193,6 +196,7 @@ bool SequenceRun::ProcessNext() {
   WarnOfMissingDepth(frame);
   WarnOfLostSurfaces(report);
   WarnOfCoarseGraphs(report.frame);
+  HearTerms(report);
   const Stopwatch writing;
   WritePictures(frame, report.frame);
   WriteProblems(report.frame);
@@ -230,7 +234,7 @@ void SequenceRun::WritePictures(const Frame& frame, int index) const {
                       scene.map.color, depth, scene.map.normals});
 }
 
-void SequenceRun::WriteProblems(int index) const {
+void SequenceRun::WriteProblems(int index) {
   if (!options_.recorder) return;
   options_.recorder->EndFrame(
       [&](const FrozenProblem& problem, bool first) {
@@ -238,8 +242,11 @@ void SequenceRun::WriteProblems(int index) const {
             directory_->paths().Problem(index, problem.surface, first),
             problem);
       },
-      [&](const std::string& reason) {
-        Warn("frame " + std::to_string(index) + ": not frozen: " + reason);
+      [&](int surface, const std::string& reason) {
+        if (!not_frozen_.emplace(surface, reason).second) return;
+        Warn("frame " + std::to_string(index) + ": surface " +
+             std::to_string(surface) + " is not frozen: " + reason +
+             "; said once");
       });
 }
 
@@ -286,6 +293,7 @@ void SequenceRun::CheckReconstructed() const {
 void SequenceRun::WriteEnd() {
   if (done_ == work_->reader.size()) {
     WarnOfUnknownClasses();
+    WarnOfSilentTerms();
     WriteResults(RunStatus::kComplete);
   } else {
     SaveCheckpoint();
@@ -373,6 +381,37 @@ void SequenceRun::WarnOfUnknownClasses() const {
     if (classes.count(named) > 0) continue;
     Warn("terms of class " + named + " had no effect: there are surfaces of " +
          AnyOf({classes.begin(), classes.end()}));
+  }
+}
+
+void SequenceRun::HearTerms(const FrameReport& report) {
+  for (const SurfaceReport& surface : report.surfaces) {
+    for (const TrackingRound& round : surface.rounds) {
+      for (const TermCost& term : round.solver.terms) {
+        if (term.residual_vectors > 0) heard_terms_.insert(term.term);
+      }
+    }
+  }
+}
+
+void SequenceRun::WarnOfSilentTerms() const {
+  const SurfaceEnergies& energies = work_->fusion.energies();
+  std::set<std::string> silent;
+  const auto look = [&](const Energy& energy) {
+    for (const WeightedTerm& term : energy) {
+      if (term.options.weight > 0) silent.insert(term.options.name);
+    }
+  };
+  look(energies.all());
+  for (const std::string& named : energies.classes()) look(energies.Of(named));
+  // Of the default energy a room alone has some terms only.
+  for (const WeightedTerm& term :
+       ParseEnergy(PipelineOptions::kDeformingTerms, BuiltinTerms())) {
+    silent.erase(term.options.name);
+  }
+  for (const std::string& term : heard_terms_) silent.erase(term);
+  for (const std::string& term : silent) {
+    Warn("term " + term + " had no effect: it added no residuals in any frame");
   }
 }
 

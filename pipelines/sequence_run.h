@@ -126,7 +126,7 @@ class SequenceRun {
   bool ProcessNext();
   std::optional<PreparedFrame> ReadNext();
   void WritePictures(const Frame& frame, int index) const;
-  void WriteProblems(int index) const;
+  void WriteProblems(int index);
   void WriteUncertainties(FrameReport* report) const;
   void ShowProgress() const;
 
@@ -142,6 +142,10 @@ class SequenceRun {
   void WarnOfSkippedFrames() const;
   /// Of options of terms for classes of which no surface is.
   void WarnOfUnknownClasses() const;
+  /// Notes which terms have residuals.
+  void HearTerms(const FrameReport& report);
+  /// Of terms beside those of the default energy that had none.
+  void WarnOfSilentTerms() const;
   void Warn(const std::string& line) const;
 
   std::unique_ptr<Reconstruction> work_;
@@ -153,6 +157,8 @@ class SequenceRun {
   Stopwatch since_start_;
   Stopwatch since_checkpoint_;
   std::set<int> coarse_;  // Surfaces whose graph is coarser than planned.
+  std::set<std::string> heard_terms_;                 // Those with residuals.
+  std::set<std::pair<int, std::string>> not_frozen_;  // Surface and why.
   bool warned_of_depth_ = false;
   int done_ = 0;
   int done_before_ = 0;  // By the run this one goes on with.

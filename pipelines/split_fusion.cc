@@ -135,7 +135,9 @@ bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
   report->track_points = static_cast<int>(points.size());
   SurfaceContext known(frame_, *surface, *surfaces_.at(0), goes_on);
   known.SetRendered(rendering_, background_map_);
-  known.PrepareTerms(tracker_.energies(), live_, points, &term_states_.at(id));
+  TermStates* states = &term_states_.at(id);
+  known.PrepareTerms(tracker_.energies(), live_, points, term_states_.at(0),
+                     states);
   const std::vector<PointMotion> motions =
       goes_on ? MatchPoints(*surface) : std::vector<PointMotion>();
   report->associate_seconds += stopwatch.Restart();
@@ -143,6 +145,10 @@ bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
       tracker_.Track(samples, points, live_, static_cast<std::uint16_t>(id),
                      still, graph, report, known.view(), motions);
   stopwatch.Restart();
+  if (tracked) {
+    states->KeepUnknowns(tracker_.energies().Of(surface->label()),
+                         FinalUnknowns(report->rounds.back().solver));
+  }
   if (tracked && followed) {
     point_tracks_.Begin(id, samples, WarpField(*graph), live_);
   }

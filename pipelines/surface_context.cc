@@ -38,13 +38,16 @@ void SurfaceContext::SetRendered(const MeshRendering& rendering,
 void SurfaceContext::PrepareTerms(const SurfaceEnergies& energies,
                                   const LiveView& live,
                                   const std::vector<TrackedPoint>& tracks,
+                                  const TermStates& background,
                                   TermStates* states) {
   const std::vector<Correspondence> none;
   EnergyInput input{surface_.graph(), none, live.camera, &live};
   input.tracks = &tracks;
   input.surface = surface_.id();
   input.context = view_;
-  states->Prepare(energies.Of(surface_.label()), input);
+  const Energy& energy = energies.Of(surface_.label());
+  states->BeginUnknowns(energy, background);
+  states->Prepare(energy, input);
   view_.states = states;
 }
 

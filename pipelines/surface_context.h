@@ -27,9 +27,10 @@ class SurfaceContext {
   void SetRendered(const MeshRendering& rendering, const ModelMap& background);
 
   /// Has the terms prepare what they keep of the surface, and adds it.
+  /// `background`: what they keep of the background.
   void PrepareTerms(const SurfaceEnergies& energies, const LiveView& live,
                     const std::vector<TrackedPoint>& tracks,
-                    TermStates* states);
+                    const TermStates& background, TermStates* states);
 
   /// For the terms; holds as long as this.
   const TermContext& view() const { return view_; }

@@ -8,6 +8,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/surface_history.h"
+#include "splitfusion/lib/energy/term_state.h"
 #include "splitfusion/lib/tracking/agreement.h"
 #include "splitfusion/pipelines/part_start.h"
 
@@ -87,13 +88,23 @@ double StartRadius(const std::vector<TrackingRound>& rounds,
 }
 
 /// Values at which a round's solve begins to look for the terms' own unknowns:
-/// those of the round before, of whatever stage; none in the first round.
-std::vector<double> StartUnknowns(const std::vector<TrackingRound>& rounds) {
+/// those of the round before, of whatever stage; in the first round where they
+/// begin the frame.
+std::vector<double> StartUnknowns(const std::vector<TrackingRound>& rounds,
+                                  const Energy& energy,
+                                  const TermStates* states) {
   const auto last = std::find_if(
       rounds.rbegin(), rounds.rend(),
       [](const TrackingRound& round) { return round.solver.usable; });
-  if (last == rounds.rend()) return {};
-  return FinalUnknowns(last->solver);
+  if (last != rounds.rend()) return FinalUnknowns(last->solver);
+  std::vector<double> values;
+  for (std::size_t i = 0; states != nullptr && i < energy.size(); ++i) {
+    const std::vector<double>* begun = states->Begun(energy, i);
+    if (begun != nullptr) {
+      values.insert(values.end(), begun->begin(), begun->end());
+    }
+  }
+  return values;
 }
 
 /// Whether the last step raised the cost and was not taken: a shorter one may
@@ -455,7 +466,7 @@ bool SurfaceTracker::RunRound(const std::vector<ModelSample>& samples,
              ? StartRadius(report->rounds, round.stage, initial_radius_)
              : initial_radius_,
          &association.lost, &target.tracks, target.surface, context,
-         StartUnknowns(report->rounds)},
+         StartUnknowns(report->rounds, target.energy, context.states)},
         graph);
     report->residual_rms = ResidualRms(association.correspondences, *graph);
     settled = !round.solver.usable ||

@@ -49,6 +49,17 @@ def point_to_plane(file, term):
     return energy((root * distance) ** 2, count, term)
 
 
+def projective_depth(file, term):
+    pairs = file["correspondences"]
+    root = np.sqrt(pairs["confidence"][:]).astype(float)  # Single precision.
+    normal = pairs["target_normal"][:].astype(float)
+    x = warp(pairs, file["graph"])
+    plane = np.einsum("mi,mi->m", normal, pairs["target"][:].astype(float))
+    away = x[:, 2] * (1 - plane / np.einsum("mi,mi->m", normal, x))
+    count = pairs["confidence"][:].sum(dtype=float)
+    return energy((root * away) ** 2, count, term)
+
+
 def arap(file, term):
     i, j = file["edges/nodes"][:].T
     graph = file["graph"]
@@ -67,7 +78,8 @@ def main(path):
               f"{len(file['graph/position'])} nodes, "
               f"{len(file['correspondences/point'])} pairs")
         own = file["terms/start_cost"][:]
-        evaluate = {"point_to_plane": point_to_plane, "arap": arap}
+        evaluate = {"point_to_plane": point_to_plane,
+                    "projective_depth": projective_depth, "arap": arap}
         for k, (name, keys) in enumerate(re.findall(r"(\w+)\(([^)]*)\)", text)):
             line = f"{name}: {own[k]:.12g}"
             if name in evaluate:

@@ -210,6 +210,26 @@ struct Plane {
   }
 };
 
+/// r = sqrt(c) [x_3 - D], D the depth of the plane through the live point where
+/// the view ray of x meets it: projective_depth.
+struct Depth {
+  Carried carried;
+  Eigen::Vector3d normal, target;
+  double root;  ///< sqrt(c).
+
+  template <typename T>
+  bool operator()(T const* const* twists, T* residual) const {
+    T x[3];
+    carried.Warp(twists, x);
+    const T along =
+        T(normal[0]) * x[0] + T(normal[1]) * x[1] + T(normal[2]) * x[2];
+    if (along == T(0)) return false;
+    residual[0] =
+        T(root / kUnit) * x[2] * (T(1) - T(normal.dot(target)) / along);
+    return true;
+  }
+};
+
 /// r = m sqrt(c) [d + grad I . (pi(x) - u_0)].
 struct Color {
   Carried carried;
@@ -307,7 +327,12 @@ class Problem {
  private:
   void Add(const Term& term) {
     if (term.At("weight") == 0) return;
-    if (term.name == "point_to_plane") return AddPlanes(term);
+    if (term.name == "point_to_plane") {
+      return AddDistances<Plane>(term, "warped_normal");
+    }
+    if (term.name == "projective_depth") {
+      return AddDistances<Depth>(term, "target_normal");
+    }
     if (term.name == "color") return AddColors(term);
     if (term.name == "live_to_model") return AddLost(term);
     if (term.name == "tracks") return AddTracks(term);
@@ -336,14 +361,17 @@ class Problem {
     AddBlock(copy, copy->carried.nodes, copy->carried.count, dims, loss);
   }
 
-  void AddPlanes(const Term& term) {
+  /// `normals`: the dataset of those that the functor takes.
+  template <typename Functor>
+  void AddDistances(const Term& term, const std::string& normals) {
     const auto carried = ReadCarried(file_, "correspondences", graph_);
-    const auto normal = file_.Numbers("correspondences/warped_normal");
+    const auto normal = file_.Numbers("correspondences/" + normals);
     const auto target = file_.Numbers("correspondences/target");
     const auto root = Roots(file_, "correspondences");
     for (std::size_t i = 0; i < carried.size(); ++i) {
-      AddPoint(Plane{carried[i], Vector(normal, i), Vector(target, i), root[i]},
-               1, term.Loss(total_));
+      AddPoint(
+          Functor{carried[i], Vector(normal, i), Vector(target, i), root[i]}, 1,
+          term.Loss(total_));
     }
   }
 

@@ -64,8 +64,11 @@ struct Prior {
 class BrightnessTerm : public splitfusion::EnergyTerm {
  public:
   std::vector<splitfusion::Unknown> Unknowns() const override {
-    return {{"gain", /*unit=*/"", /*initial=*/1},
-            {"offset", /*unit=*/"", /*initial=*/0}};
+    // They are the camera's: other surfaces begin where the background, which
+    // is tracked first, has left them.
+    const auto start = splitfusion::UnknownStart::kBackground;
+    return {{"gain", /*unit=*/"", /*initial=*/1, /*scale=*/1, start},
+            {"offset", /*unit=*/"", /*initial=*/0, /*scale=*/1, start}};
   }
 
   void AddResiduals(const splitfusion::EnergyInput& input,

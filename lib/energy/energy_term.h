@@ -51,6 +51,9 @@ struct EnergyInput {
   const TermOptions* options = nullptr;
   /// What the term that is asked keeps of the surface; null if that is nothing.
   const TermState* state = nullptr;
+  /// Values at which the unknowns of the term that is asked began the frame, as
+  /// for a prior that lets them walk; null where that is not known.
+  const std::vector<double>* begun = nullptr;
 };
 
 /// One term of the energy (SplitFusion Eq. 4).
@@ -73,10 +76,10 @@ class EnergyTerm {
 
   /// What the term estimates beside the motions, at its parameters of now; most
   /// terms nothing. Functors with kUnknowns see the values in this order. They
-  /// are estimated for each surface and frame: they begin at `initial`, and
-  /// every solve of the frame begins where the one before left them. One that
-  /// no residual depends on stays where it begins; a prior is a residual of the
-  /// term's own, see ResidualSink::AddUnknowns().
+  /// are estimated for each surface and frame: they begin as Unknown::start
+  /// says, and every solve of the frame begins where the one before left them.
+  /// One that no residual depends on stays where it begins; a prior is a
+  /// residual of the term's own, see ResidualSink::AddUnknowns().
   virtual std::vector<Unknown> Unknowns() const { return {}; }
 
   /// Adds the residuals of all its points, nodes or edges.

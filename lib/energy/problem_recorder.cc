@@ -65,7 +65,7 @@ void ProblemRecorder::BeginFrame(int frame) {
 
 void ProblemRecorder::EndFrame(
     const Write& write,
-    const std::function<void(const std::string&)>& refused) {
+    const std::function<void(int, const std::string&)>& refused) {
   // Terms may be absent in some rounds: what is left is not the last problem.
   for (const auto& [surface, reason] : refused_) {
     first_.erase(surface);
@@ -73,7 +73,7 @@ void ProblemRecorder::EndFrame(
   }
   for (const auto& [surface, problem] : first_) write(problem, true);
   for (const auto& [surface, problem] : problems_) write(problem, false);
-  for (const auto& [surface, reason] : refused_) refused(reason);
+  for (const auto& [surface, reason] : refused_) refused(surface, reason);
 }
 
 void ProblemRecorder::Keep(FrozenProblem problem) {

@@ -31,10 +31,10 @@ class ProblemRecorder : public std::enable_shared_from_this<ProblemRecorder> {
   using Write = std::function<void(const FrozenProblem&, bool first)>;
 
   /// Hands over what was kept since BeginFrame(), by id of the surface. Of one
-  /// with a problem that cannot be frozen nothing is; `refused` receives why,
-  /// one line.
+  /// with a problem that cannot be frozen nothing is; `refused` receives its
+  /// id and why, one line.
   void EndFrame(const Write& write,
-                const std::function<void(const std::string&)>& refused);
+                const std::function<void(int, const std::string&)>& refused);
 
  private:
   class Watched;

@@ -30,7 +30,10 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
   for (std::size_t i = 0; i < problem.energy.size(); ++i) {
     const WeightedTerm& weighted = problem.energy[i];
     input.options = &weighted.options;
-    input.state = states == nullptr ? nullptr : states->Find(problem.energy, i);
+    if (states != nullptr) {
+      input.state = states->Find(problem.energy, i);
+      input.begun = states->Begun(problem.energy, i);
+    }
     ResidualSink sink(weighted.options, &cache, unknowns.ScalesOf(i));
     CallTerm(weighted.options.name, "AddResiduals()",
              [&] { weighted.term->AddResiduals(input, &sink); });

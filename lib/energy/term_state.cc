@@ -6,6 +6,7 @@
 
 #include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/energy/term_call.h"
+#include "splitfusion/lib/energy/term_unknowns.h"
 
 namespace splitfusion {
 namespace {
@@ -52,6 +53,46 @@ const TermState* TermStates::Find(const Energy& energy, std::size_t i) const {
   return found == states_.end() || found->second.of != typeid(term)
              ? nullptr
              : found->second.state.get();
+}
+
+void TermStates::BeginUnknowns(const Energy& energy,
+                               const TermStates& background) {
+  begun_.clear();
+  for (std::size_t i = 0; i < energy.size(); ++i) {
+    const std::string name = NameOf(energy, i);
+    const std::vector<Unknown> unknowns = DeclaredUnknowns(energy[i]);
+    std::vector<double>& begun = begun_[name];
+    for (std::size_t u = 0; u < unknowns.size(); ++u) {
+      const TermStates& from =
+          unknowns[u].start == UnknownStart::kBackground ? background : *this;
+      const auto kept = from.unknowns_.find(name);
+      const bool known = unknowns[u].start != UnknownStart::kInitial &&
+                         kept != from.unknowns_.end() &&
+                         kept->second.size() == unknowns.size();
+      begun.push_back(known ? kept->second[u] : unknowns[u].initial);
+    }
+  }
+}
+
+const std::vector<double>* TermStates::Begun(const Energy& energy,
+                                             std::size_t i) const {
+  const auto begun = begun_.find(NameOf(energy, i));
+  return begun == begun_.end() ? nullptr : &begun->second;
+}
+
+void TermStates::KeepUnknowns(const Energy& energy,
+                              const std::vector<double>& values) {
+  if (values.empty()) return;  // Of a solver that does not seek them.
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < energy.size(); ++i) {
+    const std::size_t count = DeclaredUnknowns(energy[i]).size();
+    CheckOption(first + count <= values.size(), "unknowns", values.size(),
+                "as many as the terms declare");
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+    unknowns_[NameOf(energy, i)].assign(
+        begin, begin + static_cast<std::ptrdiff_t>(count));
+    first += count;
+  }
 }
 
 std::map<std::string, std::string> TermStates::Save() const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <typeindex>
+#include <vector>
 
 #include "splitfusion/lib/energy/term_registry.h"
 
@@ -42,11 +43,28 @@ class TermStates {
   /// That of the i-th term of an energy; null if it has none.
   const TermState* Find(const Energy& energy, std::size_t i) const;
 
+  /// Takes the terms' own unknowns to where they begin a frame, see
+  /// UnknownStart. `background`: what terms keep of the background, whose frame
+  /// has ended; of itself these states.
+  ///
+  /// @throw InputError as DeclaredUnknowns().
+  void BeginUnknowns(const Energy& energy, const TermStates& background);
+
+  /// Where those of the i-th term of an energy began the frame, in the order of
+  /// EnergyTerm::Unknowns(); null before BeginUnknowns().
+  const std::vector<double>* Begun(const Energy& energy, std::size_t i) const;
+
+  /// Keeps what the unknowns of all terms of an energy, in its order, have
+  /// become; without values nothing.
+  ///
+  /// @throw InputError as DeclaredUnknowns(), and if these are others.
+  void KeepUnknowns(const Energy& energy, const std::vector<double>& values);
+
   /// Saves or restores them, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
     std::map<std::string, std::string> saved = Save();
-    (*archive)(saved);
+    (*archive)(saved, unknowns_);
     if constexpr (Archive::kReads) {
       states_.clear();
       saved_ = std::move(saved);
@@ -67,6 +85,8 @@ class TermStates {
   std::map<std::string, Kept> states_;  // By NameOf().
   /// Restored, of terms that have not been prepared since.
   std::map<std::string, std::string> saved_;
+  std::map<std::string, std::vector<double>> unknowns_;  // Kept, by NameOf().
+  std::map<std::string, std::vector<double>> begun_;     // Likewise.
 };
 
 }  // namespace splitfusion

@@ -9,16 +9,29 @@
 
 namespace splitfusion {
 
+/// Where an unknown begins a frame; the solves of a frame after the first one
+/// begin where the one before left it.
+enum class UnknownStart {
+  kInitial,      ///< At its initial value.
+  kFrameBefore,  ///< Where the surface was tracked last.
+  /// Where the background of this frame has left it, which is tracked first, as
+  /// of a number that belongs to the camera; of the background itself as
+  /// kFrameBefore.
+  kBackground
+};
+
 /// A number that a term estimates together with the motions, beside the twists
 /// of the nodes: brightness of the live image, scale of its depth.
 struct Unknown {
   /// Letters, digits and _; another one for each unknown of a term.
   std::string name;
   std::string unit;    ///< Of its value; may be empty.
-  double initial = 0;  ///< Value at the begin of every frame.
+  double initial = 0;  ///< Value at the begin, see `start`.
   /// A change of the value that counts as much as one radian or one metre:
   /// solvers seek value / scale.
   double scale = 1;
+  /// What it begins a frame with; the initial value where that is not known.
+  UnknownStart start = UnknownStart::kInitial;
 };
 
 namespace internal {

@@ -28,10 +28,10 @@ struct Shown {
 /// What the lines of a table are.
 enum class Lined { kMeans, kDifferences, kEffects };
 
-/// In this order where they tell equally much.
+/// In this order where they tell equally much, ATE first.
 constexpr std::array<Shown, 16> kShown = {{
-    {"f_score_seen", "F seen %", 100, 1, "F seen pt"},
     {"ate_m", "ATE mm", 1000, 2, "ATE %"},
+    {"f_score_seen", "F seen %", 100, 1, "F seen pt"},
     {"missing", "missing %", 100, 1, "missing pt"},
     {"stretched", "stretched %", 100, 2, "stretched pt"},
     {"ghosts", "ghosts %", 100, 2, "ghosts pt"},
@@ -140,12 +140,16 @@ Shown Effect(Shown shown) {
   return shown;
 }
 
-/// The figures in the order in which they are shown.
+/// The figures in the order in which they are shown: ATE first, then what tells
+/// most.
 std::vector<Shown> InOrder(const std::vector<ResultGroup>& groups,
                            Lined lined) {
   std::vector<std::pair<double, Shown>> order;
   for (const Shown& shown : kShown) {
-    order.emplace_back(Telling(groups, FigureColumn(shown.name), lined),
+    const bool headline = std::string(shown.name) == "ate_m";
+    order.emplace_back(headline
+                           ? std::numeric_limits<double>::infinity()
+                           : Telling(groups, FigureColumn(shown.name), lined),
                        lined == Lined::kEffects ? Effect(shown) : shown);
   }
   std::stable_sort(

@@ -36,7 +36,7 @@ class ProblemRecorderTest : public ::testing::Test {
         [&](const FrozenProblem& problem, bool first) {
           (first ? first_ : problems).push_back(problem);
         },
-        [](const std::string& reason) { ADD_FAILURE() << reason; });
+        [](int, const std::string& reason) { ADD_FAILURE() << reason; });
     return problems;
   }
 
@@ -129,12 +129,14 @@ TEST_F(ProblemRecorderTest, OfASurfaceThatIsRefusedNothingIsKept) {
   problem.live = nullptr;
   solver->Minimize(problem, &graph);
   std::vector<int> kept;
-  int refused = 0;
-  recorder_->EndFrame([&](const FrozenProblem& frozen,
-                          bool) { kept.push_back(frozen.surface); },
-                      [&](const std::string&) { ++refused; });
+  std::vector<int> refused;
+  recorder_->EndFrame(
+      [&](const FrozenProblem& frozen, bool) {
+        kept.push_back(frozen.surface);
+      },
+      [&](int surface, const std::string&) { refused.push_back(surface); });
   EXPECT_EQ(kept, (std::vector<int>{2, 2}));
-  EXPECT_EQ(refused, 1);
+  EXPECT_EQ(refused, std::vector<int>{1});
 }
 
 }  // namespace

@@ -380,7 +380,7 @@ TEST(SplitFusion, TakesTermsOfOnesOwn) {
   run.Next();
   const FrameReport report = run.Next();
   EXPECT_GT(*count, 0);
-  EXPECT_EQ(Find(report, 0)->rounds.at(0).solver.terms.back().term, "counting");
+  EXPECT_EQ(Find(report, 1)->rounds.at(0).solver.terms.back().term, "counting");
   ExpectInputError([&] { SyntheticRun(SyntheticRun::Quick(), options); },
                    "term = counting: expected point_to_plane");
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <set>
@@ -183,6 +184,64 @@ TEST(TermContext, WhatATermKeepsSurvivesACheckpoint) {
   }
   EXPECT_TRUE(SameResults(whole.fusion(), resumed.fusion()));
   EXPECT_FALSE(SameResults(whole.fusion(), without.fusion()));
+}
+
+/// Takes three numbers each a step farther from where it began the frame.
+class WalkTerm : public EnergyTerm {
+ public:
+  struct Step {
+    static constexpr int kResiduals = 3;
+    static constexpr int kUnknowns = 3;
+    std::array<double, 3> aims;
+    template <typename T>
+    bool operator()(const T* unknowns, T* residual) const {
+      for (int u = 0; u < 3; ++u) residual[u] = unknowns[u] - T(aims[u]);
+      return true;
+    }
+  };
+
+  std::vector<Unknown> Unknowns() const override {
+    return {{"new", "", 1, 1, UnknownStart::kInitial},
+            {"kept", "", 1, 1, UnknownStart::kFrameBefore},
+            {"shared", "", 1, 1, UnknownStart::kBackground}};
+  }
+  void AddResiduals(const EnergyInput& input,
+                    ResidualSink* sink) const override {
+    ASSERT_NE(input.begun, nullptr);
+    const std::vector<double>& begun = *input.begun;
+    ASSERT_EQ(begun.size(), 3u);
+    sink->AddUnknowns(
+        std::vector<Step>{{{begun[0] + 1, begun[1] + 1, begun[2] + 1}}});
+  }
+};
+
+TEST(TermContext, UnknownsBeginWhereTheySay) {
+  Registries registries;
+  registries.terms.Register("walk",
+                            [] { return std::make_unique<WalkTerm>(); });
+  PipelineOptions options;
+  options.terms += " walk(weight=1e-2)";
+  SyntheticRun run(SyntheticRun::Quick(), options, registries);
+  run.Next();
+  for (int frame = 1; frame < 4; ++frame) {
+    SCOPED_TRACE(frame);
+    const FrameReport report = run.Next();
+    ASSERT_GE(report.surfaces.size(), 2u);
+    EXPECT_EQ(report.surfaces[1].label, "person");
+    for (const SurfaceReport& surface : report.surfaces) {
+      SCOPED_TRACE(surface.label);
+      if (surface.label == "teddy bear") continue;  // Too small to be tracked.
+      ASSERT_FALSE(surface.rounds.empty());
+      const auto& first = surface.rounds.front().solver.unknowns;
+      const auto& last = surface.rounds.back().solver.unknowns;
+      ASSERT_EQ(first.size(), 3u);
+      EXPECT_EQ(first[0].initial, 1);
+      EXPECT_NEAR(first[1].initial, frame, 0.01);
+      EXPECT_NEAR(first[2].initial, surface.id == 0 ? frame : frame + 1, 0.01);
+      EXPECT_NEAR(last[1].final, frame + 1, 0.01);
+    }
+    run.RestartFrom(run.State());
+  }
 }
 
 /// A residual of one node that there may not be, or of a value that is none.

@@ -294,6 +294,17 @@ TEST_F(Resume, OptionsOfAClassAreAPartOfTheRun) {
             folder_.Read("whole/surfaces/001_person/motions.bin"));
 }
 
+TEST_F(Resume, ATermWithoutResidualsIsNamed) {
+  // It needs three frames.
+  const std::string silent = "had no effect: it added no residuals";
+  const ProgramResult run =
+      Run("run", std::string(kOptions) +
+                     " --set=terms.acceleration.weight=1 --max_frames=2");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.errors, HasSubstr("term acceleration " + silent));
+  EXPECT_THAT(run.errors, Not(HasSubstr("term arap " + silent)));
+}
+
 TEST_F(Resume, OneStateCanBeGoneOnFromWithOtherTerms) {
   ASSERT_EQ(
       Run("base", std::string(kOptions) + " --keep_checkpoints").exit_code, 0);

@@ -152,8 +152,8 @@ TEST_F(SfSolve, ChecksTheDerivativesOfARun) {
   const ProgramResult result =
       RunProgram("sf_solve", list + "--check_gradients");
   EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
-  for (const char* term :
-       {"point_to_plane", "color", "arap", "tracks", "temporal_arap"}) {
+  for (const char* term : {"point_to_plane", "projective_depth", "color",
+                           "arap", "tracks", "temporal_arap"}) {
     EXPECT_THAT(result.output,
                 HasSubstr(std::string(term) + ": derivatives deviate by "));
   }
