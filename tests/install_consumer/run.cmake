@@ -61,6 +61,23 @@ foreach(frame RANGE 2)
     message(FATAL_ERROR "frame ${frame}: residuals of steady: '${found}'")
   endif()
 endforeach()
+# A term that keeps features from frame to frame: the first pairs are those of
+# the second frame in which the person is tracked.
+run("${bin}/sf_synth" --frames=3 --width=320 --height=240
+    "--output=${STAGE_DIR}/larger")
+run("${bin}/sf_run" "--terms_library=${stretch}/liborb.so"
+    --set=terms.orb.weight=1 "--output=${STAGE_DIR}/orb"
+    "--sequence=${STAGE_DIR}/larger")
+file(STRINGS "${STAGE_DIR}/orb/frames.jsonl" frames)
+foreach(frame RANGE 2)
+  list(GET frames ${frame} line)
+  string(REGEX MATCH
+    "\"term\": ?\"orb\", ?\"residual_vectors\": ?[1-9]" found "${line}")
+  if((frame LESS 2 AND found) OR (frame EQUAL 2 AND NOT found))
+    message(FATAL_ERROR "frame ${frame}: residuals of orb: '${found}'")
+  endif()
+endforeach()
+
 # A term with an unknown of its own, whose estimates are in the report.
 run("${bin}/sf_run" "--terms_library=${stretch}/libbrightness.so"
     "--output=${STAGE_DIR}/unknown" "--sequence=${STAGE_DIR}/sequence"
