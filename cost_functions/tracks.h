@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/energy/energy_term.h"
 
 namespace splitfusion {
@@ -12,18 +13,21 @@ namespace splitfusion {
 /// Distance of a warped model point, across the view, from where its point
 /// track is seen:
 ///
-///   r = sqrt(c) z_t [ pi(x) - pi(v_t) ]
+///   r = sqrt(c) ( z_t [ pi(x) - pi(v_t) ], sqrt(d) [ x_3 - z_t ] )
 ///
 /// x is the warped model point (Eq. 2), pi(x) = (x_1, x_2) / x_3, v_t the live
-/// point where the track is seen, z_t its depth and c the confidence of that.
-/// Of depth nothing is asked, which is what Eq. 5 does.
+/// point where the track is seen, z_t its depth and c the confidence of that, d
+/// the key `depth`. Eq. 5 asks for the depth where the model is projected to,
+/// this for that where the point is seen: a limb that moves off along the view
+/// by more than the gates of Eq. 5, or beside itself, still has its own depth.
 ///
-/// Residuals: 2, metres * sqrt(confidence).
+/// Residuals: 3, metres * sqrt(confidence).
 struct TrackDistance {
   /// Residuals of one point.
-  static constexpr int kResiduals = 2;  // Layout.
+  static constexpr int kResiduals = 3;  // Layout.
   Eigen::Vector3d target;               ///< v_t, camera frame, metres.
   double sqrt_confidence = 1;           ///< sqrt(c).
+  double along = 1;                     ///< sqrt(d).
 
   /// `x`: warped point, camera frame, metres.
   template <typename T>
@@ -31,6 +35,7 @@ struct TrackDistance {
     const T scale = T(sqrt_confidence * target.z());
     residual[0] = scale * (x[0] / x[2] - T(target.x() / target.z()));
     residual[1] = scale * (x[1] / x[2] - T(target.y() / target.z()));
+    residual[2] = T(along * sqrt_confidence) * (x[2] - T(target.z()));
     return true;
   }
 };
@@ -42,6 +47,12 @@ struct TrackDistance {
 /// their confidences and of those of the correspondences.
 class TracksTerm : public EnergyTerm {
  public:
+  void List(OptionList* list) override {
+    list->Number("depth", &depth_, Range::AtLeast(0), "",
+                 "Weight of the difference of depth beside those across the "
+                 "view; 0: the image alone.");
+  }
+
   void AddResiduals(const EnergyInput& input,
                     ResidualSink* sink) const override {
     if (input.tracks == nullptr) return;
@@ -51,12 +62,15 @@ class TracksTerm : public EnergyTerm {
     for (const Correspondence& c : input.correspondences) total += c.weight;
     for (const TrackedPoint& point : *input.tracks) {
       samples.push_back(&point.model);
-      functors.push_back(
-          {point.target.cast<double>(), std::sqrt(point.weight)});
+      functors.push_back({point.target.cast<double>(), std::sqrt(point.weight),
+                          std::sqrt(depth_)});
       total += point.weight;
     }
     sink->AddWarpedPoints(samples, functors, total);
   }
+
+ private:
+  double depth_ = 1;
 };
 
 }  // namespace splitfusion

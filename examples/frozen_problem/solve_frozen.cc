@@ -248,11 +248,11 @@ struct Color {
   }
 };
 
-/// r = sqrt(c) z_t [pi(x) - pi(v_t)].
+/// r = sqrt(c) (z_t [pi(x) - pi(v_t)], sqrt(d) [x_3 - z_t]).
 struct Track {
   Carried carried;
   Eigen::Vector3d target;
-  double root;
+  double root, along;  ///< sqrt(c), sqrt(d).
 
   template <typename T>
   bool operator()(T const* const* twists, T* residual) const {
@@ -262,6 +262,7 @@ struct Track {
       residual[d] = T(root * target[2] / kUnit) *
                     (x[d] / x[2] - T(target[d] / target[2]));
     }
+    residual[2] = T(root * along / kUnit) * (x[2] - T(target[2]));
     return true;
   }
 };
@@ -423,8 +424,9 @@ class Problem {
     const auto root = Roots(file_, "tracks");
     const double total = total_ + Sum(file_.Numbers("tracks/confidence"));
     for (std::size_t i = 0; i < carried.size(); ++i) {
-      AddPoint(Track{carried[i], Vector(target, i), root[i]}, 2,
-               term.Loss(total));
+      AddPoint(Track{carried[i], Vector(target, i), root[i],
+                     std::sqrt(term.At("depth"))},
+               3, term.Loss(total));
     }
   }
 

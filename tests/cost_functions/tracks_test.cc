@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/energy/warp_functor.h"
 #include "support/gradient_check.h"
 #include "support/sample_correspondences.h"
@@ -14,8 +15,8 @@ namespace {
 
 const TermOptions kOptions{"tracks", 1, LossKind::kTrivial, 0.01};
 
-Eigen::Vector2d Value(const TrackDistance& track, const Eigen::Vector3d& x) {
-  Eigen::Vector2d residual;
+Eigen::Vector3d Value(const TrackDistance& track, const Eigen::Vector3d& x) {
+  Eigen::Vector3d residual;
   track(x.data(), residual.data());
   return residual;
 }
@@ -23,14 +24,20 @@ Eigen::Vector2d Value(const TrackDistance& track, const Eigen::Vector3d& x) {
 TEST(TrackDistance, IsTheWayAcrossTheView) {
   const Eigen::Vector3d target(0.2, -0.1, 2);
   const Eigen::Vector3d x = target + Eigen::Vector3d(0.03, -0.04, 0);
-  EXPECT_TRUE(Value({target, 1}, x).isApprox(Eigen::Vector2d(0.03, -0.04)));
-  EXPECT_TRUE(Value({target, 0.5}, x).isApprox(Eigen::Vector2d(0.015, -0.02)));
+  EXPECT_TRUE(Value({target, 1}, x).isApprox(Eigen::Vector3d(0.03, -0.04, 0)));
+  EXPECT_TRUE(
+      Value({target, 0.5}, x).isApprox(Eigen::Vector3d(0.015, -0.02, 0)));
 }
 
-TEST(TrackDistance, AsksNothingOfDepth) {
+TEST(TrackDistance, IsTheDifferenceOfDepthAlongTheRay) {
   const Eigen::Vector3d target(0.2, -0.1, 2);
   for (const double stretch : {0.5, 0.9, 3.0}) {
-    EXPECT_LT(Value({target, 1}, stretch * target).norm(), 1e-12);
+    const double deeper = 2 * (stretch - 1);
+    EXPECT_TRUE(Value({target, 1}, stretch * target)
+                    .isApprox(Eigen::Vector3d(0, 0, deeper)));
+    EXPECT_TRUE(Value({target, 0.5, 3}, stretch * target)
+                    .isApprox(Eigen::Vector3d(0, 0, 1.5 * deeper)));
+    EXPECT_LT(Value({target, 1, 0}, stretch * target).norm(), 1e-12);
   }
 }
 
@@ -39,10 +46,10 @@ TEST(TrackDistance, GradientsMatchNumeric) {
   Shake(0.05, /*seed=*/1, &graph);
   const Eigen::Vector3f point(0.11f, -0.07f, 1);
   const Skinning skinning = SkinningIndex(graph, 6).Skin(point);
-  const auto cost =
-      AutoDiffOverTwists(WarpFunctor<TrackDistance>(graph, skinning, point,
-                                                    {{0.1, -0.06, 1.1}, 0.7}),
-                         skinning.count, 2);
+  const auto cost = AutoDiffOverTwists(
+      WarpFunctor<TrackDistance>(graph, skinning, point,
+                                 {{0.1, -0.06, 1.1}, 0.7, 0.8}),
+      skinning.count, 3);
   for (const double size : {0.0, 0.01, 0.3}) {
     EXPECT_GRADIENTS_MATCH(*cost,
                            RandomTwists(skinning.count, size, /*seed=*/2));
@@ -74,6 +81,23 @@ TEST(TracksTerm, ATrackIsWorthACorrespondence) {
   EXPECT_EQ(added.residual_vectors, static_cast<int>(tracks.size()));
   EXPECT_NEAR(EnergyOf(MakeRigidGraph(Rigid3d::Identity()), added.residuals),
               25.0 * tracks.size() / (found.size() + tracks.size()), 1e-3);
+}
+
+TEST(TracksTerm, DepthCountsAsItsKeySays) {
+  const std::vector<Correspondence> found = PlateMovedBy({0, 0, 0});
+  const std::vector<TrackedPoint> tracks = PointsOf(PlateMovedBy({0, 0, 0.05}));
+  const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
+  EnergyInput input{graph, found, PinholeCamera()};
+  input.tracks = &tracks;
+  const auto energy = [&](double depth) {
+    const Energy terms = ParseEnergy(
+        "tracks(depth=" + std::to_string(depth) + ")", BuiltinTerms());
+    return EnergyOf(graph,
+                    ResidualsOf(*terms[0].term, input, kOptions).residuals);
+  };
+  const double across = energy(0);  // Deeper, their pixels are others.
+  EXPECT_NEAR(energy(1), across + 25.0 / 2, 1e-3);
+  EXPECT_NEAR(energy(3), across + 3 * 25.0 / 2, 1e-3);
 }
 
 TEST(TracksTerm, IsNothingWithoutTracks) {
