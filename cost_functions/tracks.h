@@ -2,6 +2,7 @@
 #define SPLITFUSION_COST_FUNCTIONS_TRACKS_H_
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -16,10 +17,16 @@ namespace splitfusion {
 ///   r = sqrt(c) ( z_t [ pi(x) - pi(v_t) ], sqrt(d) [ x_3 - z_t ] )
 ///
 /// x is the warped model point (Eq. 2), pi(x) = (x_1, x_2) / x_3, v_t the live
-/// point where the track is seen, z_t its depth and c the confidence of that, d
-/// the key `depth`. Eq. 5 asks for the depth where the model is projected to,
-/// this for that where the point is seen: a limb that moves off along the view
-/// by more than the gates of Eq. 5, or beside itself, still has its own depth.
+/// point where the track is seen, z_t its depth and c the confidence of that.
+/// Eq. 5 asks for the depth where the model is projected to, this for that
+/// where the point is seen: a limb that moves off along the view by more than
+/// the gates of Eq. 5, or beside itself, still has its own depth. d is the key
+/// `depth` times how much better than the depth a pixel is known:
+///
+///   sqrt(d) = sqrt(depth) min(1, (z_t / f) / sigma(z_t))
+///
+/// f the focal length, sigma the noise of the depth: a pixel for the one, a
+/// standard deviation for the other.
 ///
 /// Residuals: 3, metres * sqrt(confidence).
 struct TrackDistance {
@@ -49,8 +56,9 @@ class TracksTerm : public EnergyTerm {
  public:
   void List(OptionList* list) override {
     list->Number("depth", &depth_, Range::AtLeast(0), "",
-                 "Weight of the difference of depth beside those across the "
-                 "view; 0: the image alone.");
+                 "Weight of the difference of depth, in its standard "
+                 "deviations, beside that across the view, in pixels; 0: the "
+                 "image alone.");
   }
 
   void AddResiduals(const EnergyInput& input,
@@ -61,9 +69,12 @@ class TracksTerm : public EnergyTerm {
     double total = 0;
     for (const Correspondence& c : input.correspondences) total += c.weight;
     for (const TrackedPoint& point : *input.tracks) {
+      const double z = point.target.z();
+      const double exactness =
+          z / input.camera.fx / input.camera.noise.Sigma(z);
       samples.push_back(&point.model);
       functors.push_back({point.target.cast<double>(), std::sqrt(point.weight),
-                          std::sqrt(depth_)});
+                          std::sqrt(depth_) * std::min(1.0, exactness)});
       total += point.weight;
     }
     sink->AddWarpedPoints(samples, functors, total);

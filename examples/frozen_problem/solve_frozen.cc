@@ -14,6 +14,7 @@
 #include <hdf5.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -424,8 +425,13 @@ class Problem {
     const auto root = Roots(file_, "tracks");
     const double total = total_ + Sum(file_.Numbers("tracks/confidence"));
     for (std::size_t i = 0; i < carried.size(); ++i) {
+      const double z = target[3 * i + 2];
+      const double off = z - file_.Number("noise_best");
+      const double sigma = file_.Number("noise_least") +
+                           file_.Number("noise_growth") * off * off;
+      const double exactness = z / file_.Number("fx") / sigma;
       AddPoint(Track{carried[i], Vector(target, i), root[i],
-                     std::sqrt(term.At("depth"))},
+                     std::sqrt(term.At("depth")) * std::min(1.0, exactness)},
                3, term.Loss(total));
     }
   }

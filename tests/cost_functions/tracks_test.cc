@@ -87,7 +87,9 @@ TEST(TracksTerm, DepthCountsAsItsKeySays) {
   const std::vector<Correspondence> found = PlateMovedBy({0, 0, 0});
   const std::vector<TrackedPoint> tracks = PointsOf(PlateMovedBy({0, 0, 0.05}));
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  EnergyInput input{graph, found, PinholeCamera()};
+  PinholeCamera camera;
+  camera.fx = 600;
+  EnergyInput input{graph, found, camera};
   input.tracks = &tracks;
   const auto energy = [&](double depth) {
     const Energy terms = ParseEnergy(
@@ -96,8 +98,14 @@ TEST(TracksTerm, DepthCountsAsItsKeySays) {
                     ResidualsOf(*terms[0].term, input, kOptions).residuals);
   };
   const double across = energy(0);  // Deeper, their pixels are others.
+  const double z = 1.05, pixel = z / camera.fx;
+  const double ratio = pixel / camera.noise.Sigma(z);
+  ASSERT_LT(ratio, 1);
+  const double along = ratio * ratio * 25.0 / 2;
+  EXPECT_NEAR(energy(1), across + along, 1e-3);
+  EXPECT_NEAR(energy(3), across + 3 * along, 1e-3);
+  camera.fx = 50;  // A pixel tells less than the depth.
   EXPECT_NEAR(energy(1), across + 25.0 / 2, 1e-3);
-  EXPECT_NEAR(energy(3), across + 3 * 25.0 / 2, 1e-3);
 }
 
 TEST(TracksTerm, IsNothingWithoutTracks) {
