@@ -30,6 +30,19 @@ std::vector<int> SkippedFrames(const ImageFolderReader& reader) {
   return frames;
 }
 
+/// Names of the terms of any surface that weigh something.
+std::set<std::string> TermsInUse(const SurfaceEnergies& energies) {
+  std::set<std::string> names;
+  const auto look = [&](const Energy& energy) {
+    for (const WeightedTerm& term : energy) {
+      if (term.options.weight > 0) names.insert(term.options.name);
+    }
+  };
+  look(energies.all());
+  for (const std::string& named : energies.classes()) look(energies.Of(named));
+  return names;
+}
+
 /// `reader` itself.
 const ImageFolderReader& Checked(const ImageFolderReader& reader) {
   if (!reader.options().skip_bad_frames) reader.CheckFrames();
@@ -395,19 +408,11 @@ void SequenceRun::HearTerms(const FrameReport& report) {
 }
 
 void SequenceRun::WarnOfSilentTerms() const {
-  const SurfaceEnergies& energies = work_->fusion.energies();
-  std::set<std::string> silent;
-  const auto look = [&](const Energy& energy) {
-    for (const WeightedTerm& term : energy) {
-      if (term.options.weight > 0) silent.insert(term.options.name);
-    }
-  };
-  look(energies.all());
-  for (const std::string& named : energies.classes()) look(energies.Of(named));
-  // Of the default energy a room alone has some terms only.
-  for (const WeightedTerm& term :
-       ParseEnergy(PipelineOptions::kDeformingTerms, BuiltinTerms())) {
-    silent.erase(term.options.name);
+  std::set<std::string> silent = TermsInUse(work_->fusion.energies());
+  // Of the default energy a room alone, or known poses, leave some out.
+  for (const std::string& term : TermsInUse(
+           SurfaceEnergies::Parse(PipelineOptions().terms, BuiltinTerms()))) {
+    silent.erase(term);
   }
   for (const std::string& term : heard_terms_) silent.erase(term);
   for (const std::string& term : silent) {
