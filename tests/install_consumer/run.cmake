@@ -47,20 +47,28 @@ if(NOT library STREQUAL program)
   message(FATAL_ERROR "library and program differ: ${library}\n${program}")
 endif()
 
+# A term that looks at frames before: in the run of its name it has residuals in
+# the third frame, and in none before.
+function(expect_from_third_frame term)
+  file(STRINGS "${STAGE_DIR}/${term}/frames.jsonl" frames)
+  foreach(frame RANGE 2)
+    list(GET frames ${frame} line)
+    string(REGEX MATCH
+      "\"term\": ?\"${term}\", ?\"residual_vectors\": ?[1-9]" found
+      "${line}")
+    if((frame LESS 2 AND found) OR (frame EQUAL 2 AND NOT found))
+      message(FATAL_ERROR "frame ${frame}: residuals of ${term}: '${found}'")
+    endif()
+  endforeach()
+endfunction()
+
 # A term over three frames, of persons only.
 run("${bin}/sf_run"
     "--terms_library=${stretch}/libstretch.so,${stretch}/libsteady.so"
     "--set=person.terms.steady.weight=2" "--output=${STAGE_DIR}/steady"
     "--sequence=${STAGE_DIR}/sequence")
-file(STRINGS "${STAGE_DIR}/steady/frames.jsonl" frames)
-foreach(frame RANGE 2)
-  list(GET frames ${frame} line)
-  string(REGEX MATCH
-    "\"term\": ?\"steady\", ?\"residual_vectors\": ?[1-9]" found "${line}")
-  if((frame LESS 2 AND found) OR (frame EQUAL 2 AND NOT found))
-    message(FATAL_ERROR "frame ${frame}: residuals of steady: '${found}'")
-  endif()
-endforeach()
+expect_from_third_frame(steady)
+
 # A term that keeps features from frame to frame: the first pairs are those of
 # the second frame in which the person is tracked.
 run("${bin}/sf_synth" --frames=3 --width=320 --height=240
@@ -68,15 +76,7 @@ run("${bin}/sf_synth" --frames=3 --width=320 --height=240
 run("${bin}/sf_run" "--terms_library=${stretch}/liborb.so"
     --set=terms.orb.weight=1 "--output=${STAGE_DIR}/orb"
     "--sequence=${STAGE_DIR}/larger")
-file(STRINGS "${STAGE_DIR}/orb/frames.jsonl" frames)
-foreach(frame RANGE 2)
-  list(GET frames ${frame} line)
-  string(REGEX MATCH
-    "\"term\": ?\"orb\", ?\"residual_vectors\": ?[1-9]" found "${line}")
-  if((frame LESS 2 AND found) OR (frame EQUAL 2 AND NOT found))
-    message(FATAL_ERROR "frame ${frame}: residuals of orb: '${found}'")
-  endif()
-endforeach()
+expect_from_third_frame(orb)
 
 # A term with an unknown of its own, whose estimates are in the report.
 run("${bin}/sf_run" "--terms_library=${stretch}/libbrightness.so"
