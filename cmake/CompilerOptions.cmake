@@ -46,6 +46,10 @@ function(splitfusion_compile_options target)
   if(SPLITFUSION_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
+  if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Of classes that a source file defines for itself: no header holds them.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
   if(SPLITFUSION_SANITIZE)
     splitfusion_sanitize(${target} ${SPLITFUSION_SANITIZE})
   endif()
@@ -75,6 +79,19 @@ function(splitfusion_spare_openvdb_files)
       set_source_files_properties("${source}" PROPERTIES
         SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS
         "-fno-sanitize=null,vptr,alignment,object-size,nonnull-attribute,returns-nonnull-attribute")
+    endif()
+  endforeach()
+endfunction()
+
+# Unity builds (CMAKE_UNITY_BUILD), which tools/build_release.sh makes, take half
+# the time: a few files are compiled as one. Files with optimisation pragmas of
+# their own stay alone. For sources of the calling folder.
+function(splitfusion_keep_apart)
+  foreach(source ${ARGN})
+    file(STRINGS "${source}" clones REGEX "include.*base/vector_clones.h|pragma GCC optimize")
+    if(clones)
+      set_source_files_properties("${source}" PROPERTIES
+                                  SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
   endforeach()
 endfunction()

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/base/pi.h"
 #include "splitfusion/lib/energy/trial_surface.h"
 #include "splitfusion/lib/split/surface_prior.h"
 #include "splitfusion/pipelines/pipeline_options.h"
@@ -74,7 +75,7 @@ StandingObjects::StandingObjects(const PipelineOptions& options)
     : options_(options.split),
       stride_(options.render_stride),
       min_gain_(options.own_motion_gain),
-      grazing_(options.tracker.grazing_angle * M_PI / 180),
+      grazing_(options.tracker.grazing_angle * kPi<double> / 180),
       tracker_(MakeTracker(options.tracker)) {}
 
 std::vector<StandingObjects::Moving> StandingObjects::Watch(

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/pi.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/surface_history.h"
 #include "splitfusion/lib/energy/term_state.h"
@@ -142,8 +143,8 @@ int TotalRounds(const std::vector<TrackingStage>& stages) {
   return rounds;
 }
 
-double Degrees(double radians) { return radians * 180 / M_PI; }
-double Radians(double degrees) { return degrees * M_PI / 180; }
+double Degrees(double radians) { return radians * 180 / kPi<double>; }
+double Radians(double degrees) { return degrees * kPi<double> / 180; }
 
 }  // namespace
 

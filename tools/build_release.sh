@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-configure_arguments=(-DSPLITFUSION_WERROR=ON)
+configure_arguments=(-DSPLITFUSION_WERROR=ON -DCMAKE_UNITY_BUILD=ON)
 while (($#)) && [[ "$1" == -D* ]]; do
   configure_arguments+=("$1")
   shift

@@ -10,6 +10,9 @@
 
 namespace splitfusion {
 
+/// Largest difference of a frame of a run from a true mesh or pose, seconds.
+inline constexpr double kMaxTimeDifference = 0.02;
+
 /// A true mesh of one moving instance at one time.
 struct PosedMeshFile {
   int instance = 0;      ///< Instance id, from 1.

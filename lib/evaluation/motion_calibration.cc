@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 /// Largest distance of a point from the vertex that it is compared with,
 /// metres.
-constexpr float kReach = 0.02F;
+constexpr float kPairReach = 0.02F;
 
 /// Steps of the curves, in deviations, and their number.
 constexpr double kStep = 0.1;
@@ -64,7 +64,7 @@ class FrameDeviations {
     if (!tree_) return std::nullopt;
     float distance = 0;
     const int vertex = tree_->Find(p.cast<float>(), -1, &distance);
-    if (distance > kReach) return std::nullopt;
+    if (distance > kPairReach) return std::nullopt;
     Eigen::Vector3d variance;
     for (int axis = 0; axis < 3; ++axis) {
       variance[axis] = sigmas_[axis][vertex] * sigmas_[axis][vertex];

@@ -12,7 +12,7 @@ namespace splitfusion {
 namespace {
 
 /// Of a vertex's pixel from one that shows it, in both directions.
-constexpr int kReach = 2;
+constexpr int kSeenReach = 2;
 /// Of a seen vertex from the live depth, metres.
 constexpr double kDepthTolerance = 0.03;
 constexpr int kSamples = 30000;
@@ -28,11 +28,11 @@ bool IsShown(const Eigen::Vector3d& point, int instance,
              const PinholeCamera& camera, const cv::Mat_<std::uint16_t>& labels,
              const cv::Mat_<float>& depth) {
   const auto pixel = camera.PixelOf(point.cast<float>());
-  const cv::Rect inner(kReach, kReach, labels.cols - 2 * kReach,
-                       labels.rows - 2 * kReach);
+  const cv::Rect inner(kSeenReach, kSeenReach, labels.cols - 2 * kSeenReach,
+                       labels.rows - 2 * kSeenReach);
   if (!pixel || !cv::Point(pixel->x(), pixel->y()).inside(inner)) return false;
-  for (const int dv : {-kReach, 0, kReach}) {
-    for (const int du : {-kReach, 0, kReach}) {
+  for (const int dv : {-kSeenReach, 0, kSeenReach}) {
+    for (const int du : {-kSeenReach, 0, kSeenReach}) {
       const cv::Point at(pixel->x() + du, pixel->y() + dv);
       if (labels(at) == instance && depth(at) > 0 &&
           std::abs(depth(at) - point.z()) < kDepthTolerance) {

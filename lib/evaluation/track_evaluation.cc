@@ -11,9 +11,6 @@
 namespace splitfusion {
 namespace {
 
-/// Largest difference of a run's frame from the true pose of that index.
-constexpr double kMaxTimeDifference = 0.02;
-
 /// A frame in which points are given, and how far they are followed.
 struct Reference {
   int frame = 0;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/pi.h"
 
 namespace splitfusion {
 namespace {
@@ -106,7 +107,7 @@ RelativePoseError RelativeError(const MatchedPoses& poses, int step) {
         poses.estimate[i].inverse() * poses.estimate[i + step];
     const Rigid3d error = truth.inverse() * estimate;
     translations.push_back(error.translation().norm());
-    degrees.push_back(RotationAngle(error.linear()) * 180 / M_PI);
+    degrees.push_back(RotationAngle(error.linear()) * 180 / kPi<double>);
   }
   return {step, Summarize(translations), Summarize(degrees)};
 }

@@ -7,9 +7,6 @@
 namespace splitfusion {
 namespace {
 
-/// Of a true mesh or pose from a frame, seconds.
-constexpr double kMaxTimeDifference = 0.02;
-
 double TimeOf(const RecordedFrame& frame) { return frame.pose.timestamp; }
 double TimeOf(const TimedPose& pose) { return pose.timestamp; }
 

@@ -22,6 +22,11 @@ inline Eigen::Vector3f ToEigen(const cv::Vec3f& v) {
   return {v[0], v[1], v[2]};
 }
 
+/// The same the other way.
+inline cv::Vec3f ToCv(const Eigen::Vector3f& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
 /// How points and normals are computed from depth.
 struct PointMapOptions {
   /// Half width of the window over which a plane is fitted, pixels. Kinect

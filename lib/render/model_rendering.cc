@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "splitfusion/lib/geometry/point_map.h"
+
 namespace splitfusion {
 namespace {
 
@@ -86,8 +88,6 @@ std::vector<int> FirstOfRows(const cv::Mat_<cv::Vec3f>& normals) {
   }
   return first;
 }
-
-cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
 cv::Mat_<float> DepthAlone(const std::vector<Eigen::Vector3f>& vertices,
                            const Surface& surface,

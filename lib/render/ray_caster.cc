@@ -10,6 +10,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/floor_to_int.h"
+#include "splitfusion/lib/geometry/point_map.h"
 #include "splitfusion/lib/render/internal/depth_bounds.h"
 #include "splitfusion/lib/render/internal/ray_bundle.h"
 #include "splitfusion/lib/tsdf/internal/grids.h"
@@ -197,8 +198,6 @@ cv::Vec3b ColorAt(const Cast& cast, const Eigen::Vector3f& p) {
   return {internal::ByteOf(*color, 2), internal::ByteOf(*color, 1),
           internal::ByteOf(*color, 0)};
 }
-
-cv::Vec3f ToCv(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Casts the rays of some rows of an image; one object per task.
 class RowCaster {

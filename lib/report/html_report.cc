@@ -18,7 +18,7 @@ namespace splitfusion {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 constexpr const char* kHead = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>SplitFusion run</title>
@@ -81,26 +81,26 @@ const Json* FindSurface(const Json& frame, int id) {
 }
 
 double NumberOrGap(const Json& value) {
-  return value.is_number() ? value.get<double>() : kGap;
+  return value.is_number() ? value.get<double>() : kNoValue;
 }
 
-/// A number of a surface in a frame; kGap where there is none.
+/// A number of a surface in a frame; kNoValue where there is none.
 using SurfaceValue = std::function<double(const Json& surface)>;
 
 double FinalCost(const Json& surface) {
   const Json& rounds = surface.at("rounds");
-  if (rounds.empty()) return kGap;
+  if (rounds.empty()) return kNoValue;
   return NumberOrGap(rounds.back().at("solver").at("final_cost"));
 }
 
 double ResidualMillimetres(const Json& surface) {
-  if (surface.at("rounds").empty()) return kGap;
+  if (surface.at("rounds").empty()) return kNoValue;
   return 1000 * NumberOrGap(surface.at("residual_rms"));
 }
 
 double AcceptedPoints(const Json& surface) {
   const Json& rounds = surface.at("rounds");
-  if (rounds.empty()) return kGap;
+  if (rounds.empty()) return kNoValue;
   return NumberOrGap(rounds.back().at("association").at("accepted"));
 }
 
@@ -129,7 +129,7 @@ std::string SurfaceChart(const std::string& title, const Json& surfaces,
         RunPaths::SurfaceName(id, item.at("label").get<std::string>()), {}};
     for (const Json& frame : frames) {
       const Json* surface = FindSurface(frame, id);
-      series.values.push_back(surface ? value(*surface) : kGap);
+      series.values.push_back(surface ? value(*surface) : kNoValue);
     }
     chart.series.push_back(series);
   }

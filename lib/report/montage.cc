@@ -8,7 +8,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kGap = 4;  // Pixels between tiles.
+constexpr int kTileGap = 4;  // Pixels between tiles.
 
 void CheckTiles(const std::vector<MontageTile>& tiles, int columns) {
   CheckOption(columns > 0, "columns", columns, "at least 1");
@@ -40,9 +40,10 @@ cv::Mat MakeMontage(const std::vector<MontageTile>& tiles, int columns) {
   columns = std::min(columns, count);
   const int rows = (count + columns - 1) / columns;
   const cv::Size size = tiles.front().picture.size();
-  const cv::Size step(size.width + kGap, size.height + kCaptionHeight + kGap);
-  cv::Mat sheet(rows * step.height - kGap, columns * step.width - kGap, CV_8UC3,
-                cv::Scalar::all(255));
+  const cv::Size step(size.width + kTileGap,
+                      size.height + kCaptionHeight + kTileGap);
+  cv::Mat sheet(rows * step.height - kTileGap, columns * step.width - kTileGap,
+                CV_8UC3, cv::Scalar::all(255));
   for (int i = 0; i < count; ++i) {
     const cv::Point corner(i % columns * step.width,
                            i / columns * step.height + kCaptionHeight);

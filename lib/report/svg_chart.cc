@@ -91,7 +91,7 @@ std::string TextAt(double x, double y, const std::string& text,
          "\" text-anchor=\"" + anchor + "\">" + HtmlEscaped(text) + "</text>\n";
 }
 
-std::string Frame(const Axes& axes) {
+std::string AxesFrame(const Axes& axes) {
   std::string svg = "<path fill=\"none\" stroke=\"#888\" d=\"M" +
                     Number(kLeft) + " " + Number(kTop) + "v" + Number(kHeight) +
                     "h" + Number(kWidth) + "\"/>\n";
@@ -143,7 +143,7 @@ std::string SvgChart(const Chart& chart) {
                ? Area(series[s], s > 0 ? &series[s - 1] : nullptr, axes, color)
                : Line(series[s], axes, color);
   }
-  return svg + Marks(chart.marks, axes) + Frame(axes) + Legend(series) +
+  return svg + Marks(chart.marks, axes) + AxesFrame(axes) + Legend(series) +
          "</svg>\n";
 }
 

@@ -20,7 +20,7 @@ const cv::Scalar kMean(103.94, 116.78, 123.68);
 const cv::Scalar kDeviation(57.38, 57.12, 58.40);
 
 /// A prior as an instance of one class.
-struct Candidate {
+struct PriorDetection {
   int prior = 0;
   int class_index = 0;
   float score = 0;
@@ -72,19 +72,19 @@ std::vector<int> CandidatePriors(const cv::Mat& conf) {
   return priors;
 }
 
-bool IsBetter(const Candidate& a, const Candidate& b) {
+bool IsBetter(const PriorDetection& a, const PriorDetection& b) {
   return a.score > b.score;
 }
 
 /// What remains of one class, best score first.
 ///
 /// A better box suppresses, so those below the threshold change nothing above.
-std::vector<Candidate> KeepOfClass(int class_index,
-                                   const std::vector<int>& priors,
-                                   const std::vector<cv::Rect2f>& boxes,
-                                   const cv::Mat& conf,
-                                   const DecoderOptions& options) {
-  std::vector<Candidate> candidates;
+std::vector<PriorDetection> KeepOfClass(int class_index,
+                                        const std::vector<int>& priors,
+                                        const std::vector<cv::Rect2f>& boxes,
+                                        const cv::Mat& conf,
+                                        const DecoderOptions& options) {
+  std::vector<PriorDetection> candidates;
   for (std::size_t i = 0; i < priors.size(); ++i) {
     const float score = conf.at<float>(priors[i], 1 + class_index);
     if (score <= options.score_threshold) continue;
@@ -93,16 +93,18 @@ std::vector<Candidate> KeepOfClass(int class_index,
   std::stable_sort(candidates.begin(), candidates.end(), IsBetter);
   if (candidates.size() > kMaxPerClass) candidates.resize(kMaxPerClass);
   std::vector<cv::Rect2f> sorted;
-  for (const Candidate& candidate : candidates) sorted.push_back(candidate.box);
-  std::vector<Candidate> kept;
+  for (const PriorDetection& candidate : candidates)
+    sorted.push_back(candidate.box);
+  std::vector<PriorDetection> kept;
   for (const int i : FastNms(sorted, options.nms_threshold)) {
     kept.push_back(candidates[i]);
   }
   return kept;
 }
 
-std::vector<Candidate> BestCandidates(const CheckedOutputs& outputs, int input,
-                                      const DecoderOptions& options) {
+std::vector<PriorDetection> BestCandidates(const CheckedOutputs& outputs,
+                                           int input,
+                                           const DecoderOptions& options) {
   const std::vector<CenterBox> all_priors = YolactPriors(input);
   const std::vector<int> priors = CandidatePriors(outputs.conf);
   std::vector<cv::Rect2f> boxes;
@@ -110,9 +112,9 @@ std::vector<Candidate> BestCandidates(const CheckedOutputs& outputs, int input,
     boxes.push_back(
         DecodeYolactBox(all_priors[prior], outputs.loc.ptr<float>(prior)));
   }
-  std::vector<Candidate> kept;
+  std::vector<PriorDetection> kept;
   for (int c = 0; c + 1 < outputs.conf.cols; ++c) {
-    const std::vector<Candidate> of_class =
+    const std::vector<PriorDetection> of_class =
         KeepOfClass(c, priors, boxes, outputs.conf, options);
     kept.insert(kept.end(), of_class.begin(), of_class.end());
   }
@@ -142,7 +144,7 @@ cv::Mat Cropped(const cv::Mat& probability, const cv::Rect2f& box) {
   return cropped;
 }
 
-NetworkInstance MakeInstance(const Candidate& candidate,
+NetworkInstance MakeInstance(const PriorDetection& candidate,
                              const CheckedOutputs& outputs,
                              const InputPlacement& placement) {
   const float* row = outputs.mask.ptr<float>(candidate.prior);
@@ -209,7 +211,8 @@ class YolactDecoder : public NetworkDecoder {
     const int priors = static_cast<int>(YolactPriors(side).size());
     const CheckedOutputs checked = CheckOutputs(outputs, priors, input);
     std::vector<NetworkInstance> instances;
-    for (const Candidate& candidate : BestCandidates(checked, side, options)) {
+    for (const PriorDetection& candidate :
+         BestCandidates(checked, side, options)) {
       instances.push_back(MakeInstance(candidate, checked, input.placement));
     }
     return instances;

@@ -13,7 +13,7 @@ namespace {
 constexpr int kBoxRows = 4;
 
 /// One anchor that detects something.
-struct Candidate {
+struct AnchorDetection {
   int anchor = 0;
   int class_index = 0;
   float score = 0;
@@ -47,12 +47,11 @@ cv::Rect2d BoxOf(const cv::Mat& detections, int anchor) {
 }
 
 /// Anchors by class; within a class in their order.
-std::map<int, std::vector<Candidate>> FindCandidates(const cv::Mat& detections,
-                                                     int classes,
-                                                     double threshold) {
-  std::map<int, std::vector<Candidate>> candidates;
+std::map<int, std::vector<AnchorDetection>> FindCandidates(
+    const cv::Mat& detections, int classes, double threshold) {
+  std::map<int, std::vector<AnchorDetection>> candidates;
   for (int anchor = 0; anchor < detections.cols; ++anchor) {
-    Candidate best;
+    AnchorDetection best;
     for (int c = 0; c < classes; ++c) {
       const float score = detections.at<float>(kBoxRows + c, anchor);
       if (score > best.score) best = {anchor, c, score, {}};
@@ -64,11 +63,12 @@ std::map<int, std::vector<Candidate>> FindCandidates(const cv::Mat& detections,
   return candidates;
 }
 
-void AppendWithoutDoubles(const std::vector<Candidate>& candidates,
-                          double nms_threshold, std::vector<Candidate>* kept) {
+void AppendWithoutDoubles(const std::vector<AnchorDetection>& candidates,
+                          double nms_threshold,
+                          std::vector<AnchorDetection>* kept) {
   std::vector<cv::Rect2d> boxes;
   std::vector<float> scores;
-  for (const Candidate& candidate : candidates) {
+  for (const AnchorDetection& candidate : candidates) {
     boxes.push_back(candidate.box);
     scores.push_back(candidate.score);
   }
@@ -78,16 +78,18 @@ void AppendWithoutDoubles(const std::vector<Candidate>& candidates,
   for (const int i : chosen) kept->push_back(candidates[i]);
 }
 
-std::vector<Candidate> BestCandidates(const cv::Mat& detections, int classes,
-                                      const DecoderOptions& options) {
-  std::vector<Candidate> kept;
+std::vector<AnchorDetection> BestCandidates(const cv::Mat& detections,
+                                            int classes,
+                                            const DecoderOptions& options) {
+  std::vector<AnchorDetection> kept;
   for (const auto& [class_index, candidates] :
        FindCandidates(detections, classes, options.score_threshold)) {
     AppendWithoutDoubles(candidates, options.nms_threshold, &kept);
   }
-  std::stable_sort(
-      kept.begin(), kept.end(),
-      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::stable_sort(kept.begin(), kept.end(),
+                   [](const AnchorDetection& a, const AnchorDetection& b) {
+                     return a.score > b.score;
+                   });
   if (kept.size() > static_cast<std::size_t>(options.top_k)) {
     kept.resize(options.top_k);
   }
@@ -123,7 +125,7 @@ class Yolov8SegDecoder : public NetworkDecoder {
     const cv::Mat detections =
         AsMatrix(outputs.at(0).data, first_coefficient + shape[0]);
     std::vector<NetworkInstance> instances;
-    for (const Candidate& candidate :
+    for (const AnchorDetection& candidate :
          BestCandidates(detections, input.classes, options)) {
       std::vector<float> coefficients(shape[0]);
       for (int m = 0; m < shape[0]; ++m) {

@@ -9,16 +9,16 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kReach = 3;  // Pixels.
+constexpr int kContactReach = 3;  // Pixels.
 
 /// True if a pixel of `body` near (u, v) continues the surface there.
 bool Touches(const PointMap& points, const cv::Mat_<uchar>& body, int u,
              int v) {
   const cv::Vec3f& point = points.points(v, u);
-  const int v_end = std::min(v + kReach, body.rows - 1);
-  const int u_end = std::min(u + kReach, body.cols - 1);
-  for (int j = std::max(0, v - kReach); j <= v_end; ++j) {
-    for (int i = std::max(0, u - kReach); i <= u_end; ++i) {
+  const int v_end = std::min(v + kContactReach, body.rows - 1);
+  const int u_end = std::min(u + kContactReach, body.cols - 1);
+  for (int j = std::max(0, v - kContactReach); j <= v_end; ++j) {
+    for (int i = std::max(0, u - kContactReach); i <= u_end; ++i) {
       if (!body(j, i) || points.points(j, i)[2] <= 0) continue;
       const cv::Vec3f step = points.points(j, i) - point;
       const float sideways = std::hypot(step[0], step[1]);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "splitfusion/lib/base/pi.h"
+
 namespace splitfusion {
 namespace {
 
@@ -11,7 +13,6 @@ using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979;
 constexpr double kStart = 0.8;        // Where time 0 is in the first quarter.
 constexpr double kWalkSeconds = 2.0;  // Of a quarter of the oval.
 constexpr double kQuarterSeconds = 5.0;
@@ -47,7 +48,7 @@ FootState FootAt(int side, double x) {
   const double a = std::clamp((x - first) / 0.25, 0.0, 1.0);
   const double b = std::clamp((x - first - 0.5) / 0.25, 0.0, 1.0);
   return {middle * SmoothStep(a) + (1 - middle) * SmoothStep(b),
-          std::sin(kPi * a) + std::sin(kPi * b)};
+          std::sin(kPi<double> * a) + std::sin(kPi<double> * b)};
 }
 
 /// Everything that the pose depends on, at one time.
@@ -75,7 +76,7 @@ Phase PhaseAt(double time, bool walks) {
       SmoothStep(in_quarter) * SmoothStep((3.3 - in_quarter) / 1.8);
   phase.wave = number % 2 == 0 ? wave : 0;
   const double part = std::clamp((in_quarter - 1.9) / 2.8, 0.0, 1.0);
-  const double strength = std::pow(std::sin(kPi * part), 2);
+  const double strength = std::pow(std::sin(kPi<double> * part), 2);
   phase.bend = number == 0 || number == 3 ? strength : 0;
   phase.raise = number == 1 ? strength : 0;
   phase.squat = number == 2 ? strength : 0;
@@ -96,15 +97,16 @@ class Path {
   explicit Path(bool walks) : walks_(walks) {}
 
   PathPoint At(double quarter) const {
-    if (!walks_) return {Vector2d::Zero(), -kPi / 2};
-    const double angle = 0.75 * kPi + 0.5 * kPi * quarter;
+    if (!walks_) return {Vector2d::Zero(), -kPi<double> / 2};
+    const double angle = 0.75 * kPi<double> + 0.5 * kPi<double> * quarter;
     const Vector2d center(0.36, 0.36), radius(0.56, 0.4);
     const Vector2d tangent(-radius.x() * std::sin(angle),
                            radius.y() * std::cos(angle));
     // The branch of the arc tangent that is continuous along the path.
     double heading = std::atan2(tangent.y(), tangent.x());
-    const double expected = angle + 0.5 * kPi;
-    heading += 2 * kPi * std::round((expected - heading) / (2 * kPi));
+    const double expected = angle + 0.5 * kPi<double>;
+    heading +=
+        2 * kPi<double> * std::round((expected - heading) / (2 * kPi<double>));
     return {center + Vector2d(radius.x() * std::cos(angle),
                               radius.y() * std::sin(angle)),
             heading};
@@ -134,7 +136,7 @@ Vector3d Turned(const Vector3d& from, const Vector3d& to, double part) {
 }
 
 ArmPose PoseArm(int side, const Phase& phase, double swing) {
-  const double beat = std::sin(2 * kPi * 0.9 * phase.seconds);
+  const double beat = std::sin(2 * kPi<double> * 0.9 * phase.seconds);
   const double idle = 0.06 * std::sin(1.7 * phase.seconds + side);
   ArmPose arm;
   arm.upper = Vector3d(0.75 * swing + idle, 0.3, -1);
@@ -180,7 +182,7 @@ void PosePelvis(const Phase& phase, const Path& path, double swing,
   const double back = 0.12 * phase.bend + 0.1 * phase.squat;
   const double drop =
       0.035 + 0.06 * std::abs(swing) + 0.05 * phase.bend + 0.28 * phase.squat;
-  const double sway = 0.03 * std::sin(4 * kPi * phase.walked);
+  const double sway = 0.03 * std::sin(4 * kPi<double> * phase.walked);
   Rigid3d& pelvis = pose->world_from_pelvis;
   pelvis.linear() =
       (turned * PitchYawRoll(0.35 * phase.bend + 0.2 * phase.squat, 0, 0))

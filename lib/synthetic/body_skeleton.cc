@@ -15,7 +15,7 @@ constexpr double kForearmLength = 0.25;
 constexpr double kHandLength = 0.15;
 constexpr double kThighLength = 0.43;
 constexpr double kShinLength = 0.43;
-constexpr double kAnkleHeight = 0.08;
+constexpr double kAnkleAtRest = 0.08;
 
 /// +1 for the left side, -1 for the right.
 double SideSign(int side) { return side == 0 ? 1 : -1; }
@@ -30,7 +30,7 @@ Vector3d RestLegDirection(int side) {
 
 Vector3d RestHip(int side) {
   return {0, 0.1 * SideSign(side),
-          kAnkleHeight + 0.9945 * (kThighLength + kShinLength)};
+          kAnkleAtRest + 0.9945 * (kThighLength + kShinLength)};
 }
 
 RoundCone Cone(int bone, const Vector3d& start, const Vector3d& end,

@@ -2,14 +2,13 @@
 
 #include <cmath>
 
+#include "splitfusion/lib/base/pi.h"
 #include "splitfusion/lib/synthetic/hash_noise.h"
 
 namespace splitfusion {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kPi = 3.14159265358979;
 
 /// Smooth random vector with components in -1..1 and about 3 swings a second.
 Vector3d Shake(double time, std::uint32_t seed) {
@@ -22,7 +21,7 @@ Vector3d Shake(double time, std::uint32_t seed) {
 }
 
 double Sway(double time, double period, double phase) {
-  return std::sin(2 * kPi * time / period + phase);
+  return std::sin(2 * kPi<double> * time / period + phase);
 }
 
 /// Camera at `place` whose z axis points to `target`, turned by `roll`.

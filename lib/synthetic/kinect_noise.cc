@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/pi.h"
 #include "splitfusion/lib/geometry/point_map.h"
 #include "splitfusion/lib/synthetic/hash_noise.h"
 
@@ -46,8 +47,8 @@ class NoiseModel {
     shift_x_ = shift * Field(shared, kLateralX);
     shift_y_ = shift * Field(shared, kLateralY);
     blobs_ = Field(1.5 * scale, kBlobs);
-    min_cosine_ =
-        static_cast<float>(std::cos(options.grazing_degrees * CV_PI / 180));
+    min_cosine_ = static_cast<float>(
+        std::cos(options.grazing_degrees * kPi<double> / 180));
   }
 
   void MeasureRow(int v, float* out) const {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "splitfusion/lib/base/pi.h"
 #include "splitfusion/lib/synthetic/implicit_mesher.h"
 #include "splitfusion/lib/synthetic/room.h"
 
@@ -13,7 +14,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kPi = 3.14159265f;
 constexpr float kHeight = 0.45f;  // Metres.
 constexpr float kVoxel = 0.011f;  // Metres.
 constexpr float kBlend = 0.03f;   // Metres.
@@ -62,9 +62,9 @@ struct Deformation {
 
 Deformation DeformationAt(double time) {
   const auto t = static_cast<float>(time);
-  return {0.75f * std::sin(2 * kPi * 0.31f * t + 0.5f), 0.9f + 0.5f * t,
-          0.35f * std::sin(2 * kPi * 0.23f * t),
-          1 + 0.13f * std::sin(2 * kPi * 0.47f * t + 0.8f)};
+  return {0.75f * std::sin(2 * kPi<float> * 0.31f * t + 0.5f), 0.9f + 0.5f * t,
+          0.35f * std::sin(2 * kPi<float> * 0.23f * t),
+          1 + 0.13f * std::sin(2 * kPi<float> * 0.47f * t + 0.8f)};
 }
 
 /// Carries a rest point along an axis bent to a circular arc.
@@ -100,7 +100,7 @@ SoftObject::SoftObject(const Vector3f& base, std::uint32_t seed) : base_(base) {
 
 std::vector<Vector3f> SoftObject::Vertices(double time) const {
   const Deformation deformation = DeformationAt(time);
-  const Eigen::AngleAxisf yaw(-0.4f * kPi, Vector3f::UnitZ());
+  const Eigen::AngleAxisf yaw(-0.4f * kPi<float>, Vector3f::UnitZ());
   std::vector<Vector3f> vertices(rest_.mesh.vertices.size());
   tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
     vertices[i] = base_ + yaw * Deform(deformation, rest_.mesh.vertices[i]);

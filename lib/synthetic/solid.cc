@@ -5,12 +5,12 @@
 #include <cmath>
 #include <functional>
 
+#include "splitfusion/lib/base/pi.h"
+
 namespace splitfusion {
 namespace {
 
 using Eigen::Vector3f;
-
-constexpr float kPi = 3.14159265f;
 
 Eigen::Matrix3f WorldFromLocal(const Solid& solid) {
   return Eigen::AngleAxisf(solid.yaw, Vector3f::UnitZ()).toRotationMatrix();
@@ -84,7 +84,7 @@ void AppendBox(const Solid& solid, float cell, PatchAppender* appender) {
 
 int CellsAround(const Solid& solid, float cell) {
   const float radius = std::max(solid.half_size.x(), solid.half_size.y());
-  return std::max(16, CellsAlong(2 * kPi * radius, cell));
+  return std::max(16, CellsAlong(2 * kPi<float> * radius, cell));
 }
 
 void AppendCylinder(const Solid& solid, float cell, PatchAppender* appender) {
@@ -92,7 +92,7 @@ void AppendCylinder(const Solid& solid, float cell, PatchAppender* appender) {
   const int up = CellsAlong(2 * solid.half_size.z(), cell);
   const int across = CellsAlong(solid.half_size.x(), cell);
   const auto rim = [](float u, float radius, float z) {
-    const float angle = 2 * kPi * u;
+    const float angle = 2 * kPi<float> * u;
     return Vector3f(radius * std::cos(angle), radius * std::sin(angle), z);
   };
   appender->Append(around, up,
@@ -105,9 +105,10 @@ void AppendCylinder(const Solid& solid, float cell, PatchAppender* appender) {
 
 void AppendSphere(const Solid& solid, float cell, PatchAppender* appender) {
   const int around = CellsAround(solid, cell);
-  const int up = std::max(8, CellsAlong(kPi * solid.half_size.z(), cell));
+  const int up =
+      std::max(8, CellsAlong(kPi<float> * solid.half_size.z(), cell));
   appender->Append(around, up, [](float u, float v) {
-    const float angle = 2 * kPi * u, latitude = kPi * (v - 0.5f);
+    const float angle = 2 * kPi<float> * u, latitude = kPi<float> * (v - 0.5f);
     return Vector3f(std::cos(latitude) * std::cos(angle),
                     std::cos(latitude) * std::sin(angle), std::sin(latitude));
   });

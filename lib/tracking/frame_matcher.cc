@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint16_t kNone = 0xffff;  // Layout.
 
 /// About a feature, pixels: what it is described by.
-constexpr int kMargin = 24;
+constexpr int kWindowMargin = 24;
 /// Flow that differs more from a feature within that is wrong, pixels.
 constexpr double kAgreeing = 3;
 /// Least contrast of a feature, of a grey range of 1.
@@ -52,7 +52,7 @@ std::vector<PixelMatch> WithFeatures(const std::vector<PixelMatch>& flow,
   std::vector<PixelMatch> matches;
   for (const PixelMatch& match : flow) {
     const PixelMatch* nearest = nullptr;
-    double distance = kMargin;
+    double distance = kWindowMargin;
     for (const PixelMatch& feature : features) {
       const double away = cv::norm(feature.from - match.from);
       if (away < distance) distance = away, nearest = &feature;
@@ -129,7 +129,7 @@ std::vector<PointMotion> FrameMatcher::Match(int surface, const LiveView& live,
     }
   }
   if (options_.features) {
-    const cv::Size window(2 * kMargin + 1, 2 * kMargin + 1);
+    const cv::Size window(2 * kWindowMargin + 1, 2 * kWindowMargin + 1);
     cv::boxFilter(lost, lost, CV_32F, window);
     cv::boxFilter(asked, asked, CV_32F, window);
     const cv::Mat_<std::uint8_t> often = lost > options_.lost_share * asked;
@@ -147,7 +147,7 @@ std::vector<PixelMatch> FrameMatcher::MatchFeatures(
   const cv::Rect box = cv::boundingRect(region);
   if (box.empty()) return matches;
   const Features before =
-      FeaturesIn(grey_, Around(box, kMargin, grey_.size()), region);
+      FeaturesIn(grey_, Around(box, kWindowMargin, grey_.size()), region);
   if (before.pixels.empty()) return matches;
   cv::Mat_<std::uint8_t> grey;
   cv::cvtColor(live.color, grey, cv::COLOR_BGR2GRAY);

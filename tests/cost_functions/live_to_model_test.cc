@@ -10,13 +10,7 @@
 namespace splitfusion {
 namespace {
 
-const TermOptions kOptions{"live_to_model", 1, LossKind::kTrivial, 0.01};
-
-std::vector<Correspondence> PlateMovedBy(const Eigen::Vector3d& way) {
-  return PerfectAssociation(
-      PlateMesh(0.1, 0.1, 0.02, 1), MakeRigidGraph(Rigid3d::Identity()),
-      [&](const Eigen::Vector3d& p) -> Eigen::Vector3d { return p + way; });
-}
+const TermOptions kLiveToModel{"live_to_model", 1, LossKind::kTrivial, 0.01};
 
 TEST(LiveToModelTerm, IsTheSquaredDistanceWhereverTheCameraIs) {
   const std::vector<Correspondence> none;
@@ -27,9 +21,10 @@ TEST(LiveToModelTerm, IsTheSquaredDistanceWhereverTheCameraIs) {
       pair.target = motion.cast<float>() * pair.target;
     }
     const DeformationGraph graph = MakeRigidGraph(motion);
-    const AddedResiduals added = ResidualsOf(
-        LiveToModelTerm(),
-        {graph, none, PinholeCamera(), nullptr, nullptr, 1, &lost}, kOptions);
+    const AddedResiduals added =
+        ResidualsOf(LiveToModelTerm(),
+                    {graph, none, PinholeCamera(), nullptr, nullptr, 1, &lost},
+                    kLiveToModel);
     EXPECT_EQ(added.residual_vectors, static_cast<int>(lost.size()));
     EXPECT_NEAR(EnergyOf(graph, added.residuals), 25, 1e-3);
   }
@@ -40,9 +35,10 @@ TEST(LiveToModelTerm, APairIsWorthACorrespondence) {
   std::vector<Correspondence> lost = PlateMovedBy({0.05, 0, 0});
   lost.resize(found.size() / 3);
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  const AddedResiduals added = ResidualsOf(
-      LiveToModelTerm(),
-      {graph, found, PinholeCamera(), nullptr, nullptr, 1, &lost}, kOptions);
+  const AddedResiduals added =
+      ResidualsOf(LiveToModelTerm(),
+                  {graph, found, PinholeCamera(), nullptr, nullptr, 1, &lost},
+                  kLiveToModel);
   EXPECT_NEAR(EnergyOf(graph, added.residuals),
               25.0 * lost.size() / (found.size() + lost.size()), 1e-3);
 }
@@ -50,10 +46,10 @@ TEST(LiveToModelTerm, APairIsWorthACorrespondence) {
 TEST(LiveToModelTerm, IsNothingWithoutPairs) {
   const std::vector<Correspondence> found = PlateMovedBy({0.1, 0, 0});
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  EXPECT_EQ(
-      ResidualsOf(LiveToModelTerm(), {graph, found, PinholeCamera()}, kOptions)
-          .residual_vectors,
-      0);
+  EXPECT_EQ(ResidualsOf(LiveToModelTerm(), {graph, found, PinholeCamera()},
+                        kLiveToModel)
+                .residual_vectors,
+            0);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@
 namespace splitfusion {
 namespace {
 
-const TermOptions kOptions{"term", 1, LossKind::kTrivial, 0.01};
+const TermOptions kOptionalTerm{"term", 1, LossKind::kTrivial, 0.01};
 
 template <typename Functor>
 Eigen::Vector3d Value(const Functor& functor, const Eigen::Vector3d& x) {
@@ -47,19 +47,12 @@ void ExpectGradients(const Functor& functor) {
   }
 }
 
-/// Pairs of a plate with itself, moved.
-std::vector<Correspondence> PlateMovedBy(const Eigen::Vector3d& way) {
-  return PerfectAssociation(
-      PlateMesh(0.1, 0.1, 0.02, 1), MakeRigidGraph(Rigid3d::Identity()),
-      [&](const Eigen::Vector3d& p) -> Eigen::Vector3d { return p + way; });
-}
-
 double EnergyOfTerm(const EnergyTerm& term,
                     const std::vector<Correspondence>& pairs) {
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
   return EnergyOf(
-      graph,
-      ResidualsOf(term, {graph, pairs, PinholeCamera()}, kOptions).residuals);
+      graph, ResidualsOf(term, {graph, pairs, PinholeCamera()}, kOptionalTerm)
+                 .residuals);
 }
 
 TEST(PointToPoint, IsTheWholeWay) {
@@ -129,15 +122,18 @@ TEST(VelocityTerm, IsTheWaySinceTheFrameBefore) {
     motion.translation += Eigen::Vector3d(0.03, 0, -0.04);
   }
   EnergyInput input{graph, {}, PinholeCamera()};
-  EXPECT_EQ(ResidualsOf(VelocityTerm(), input, kOptions).residual_vectors, 0);
+  EXPECT_EQ(ResidualsOf(VelocityTerm(), input, kOptionalTerm).residual_vectors,
+            0);
   input.before = &before;
-  const AddedResiduals added = ResidualsOf(VelocityTerm(), input, kOptions);
+  const AddedResiduals added =
+      ResidualsOf(VelocityTerm(), input, kOptionalTerm);
   EXPECT_EQ(added.residual_vectors, graph.size());
   EXPECT_NEAR(EnergyOf(graph, added.residuals), 25, 1e-9);
   const DeformationGraph rigid = MakeRigidGraph(Rigid3d::Identity());
   EnergyInput body{rigid, {}, PinholeCamera()};
   body.before = &rigid.motions;
-  EXPECT_EQ(ResidualsOf(VelocityTerm(), body, kOptions).residual_vectors, 0);
+  EXPECT_EQ(ResidualsOf(VelocityTerm(), body, kOptionalTerm).residual_vectors,
+            0);
 }
 
 /// A plate with a node every 4 cm that was in two frames before the live one,
@@ -163,7 +159,7 @@ class AccelerationTermTest : public ::testing::Test {
   }
 
   AddedResiduals Added() const {
-    return ResidualsOf(AccelerationTerm(), input_, kOptions);
+    return ResidualsOf(AccelerationTerm(), input_, kOptionalTerm);
   }
 
   DeformationGraph graph_ = MovedBy(2);
@@ -298,7 +294,7 @@ class PointToTsdfTest : public ::testing::Test {
     input.context.surface_graph = start;
     input.context.round.rigid = start != nullptr;
     const AddedResiduals added =
-        ResidualsOf(PointToTsdfTerm(), input, kOptions);
+        ResidualsOf(PointToTsdfTerm(), input, kOptionalTerm);
     vectors_ = added.residual_vectors;
     residuals_ = added.residuals;
     return std::sqrt(EnergyOf(graph, added.residuals));

@@ -8,15 +8,15 @@
 namespace splitfusion {
 namespace {
 
-const TermOptions kOptions{"temporal_arap", /*weight=*/3, LossKind::kTrivial,
-                           0.01};
+const TermOptions kTemporalArap{"temporal_arap", /*weight=*/3,
+                                LossKind::kTrivial, 0.01};
 
 double Energy(const DeformationGraph& graph,
               const std::vector<NodeMotion>* before, double anneal) {
   return EnergyOf(
       graph, ResidualsOf(TemporalArapTerm(),
                          {graph, {}, PinholeCamera(), nullptr, before, anneal},
-                         kOptions)
+                         kTemporalArap)
                  .residuals);
 }
 

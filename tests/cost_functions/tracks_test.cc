@@ -13,7 +13,7 @@
 namespace splitfusion {
 namespace {
 
-const TermOptions kOptions{"tracks", 1, LossKind::kTrivial, 0.01};
+const TermOptions kTracks{"tracks", 1, LossKind::kTrivial, 0.01};
 
 Eigen::Vector3d Value(const TrackDistance& track, const Eigen::Vector3d& x) {
   Eigen::Vector3d residual;
@@ -64,12 +64,6 @@ std::vector<TrackedPoint> PointsOf(const std::vector<Correspondence>& pairs) {
   return points;
 }
 
-std::vector<Correspondence> PlateMovedBy(const Eigen::Vector3d& way) {
-  return PerfectAssociation(
-      PlateMesh(0.1, 0.1, 0.02, 1), MakeRigidGraph(Rigid3d::Identity()),
-      [&](const Eigen::Vector3d& p) -> Eigen::Vector3d { return p + way; });
-}
-
 TEST(TracksTerm, ATrackIsWorthACorrespondence) {
   const std::vector<Correspondence> found = PlateMovedBy({0, 0, 0});
   std::vector<TrackedPoint> tracks = PointsOf(PlateMovedBy({0.03, 0.04, 0}));
@@ -77,7 +71,7 @@ TEST(TracksTerm, ATrackIsWorthACorrespondence) {
   EnergyInput input{MakeRigidGraph(Rigid3d::Identity()), found,
                     PinholeCamera()};
   input.tracks = &tracks;
-  const AddedResiduals added = ResidualsOf(TracksTerm(), input, kOptions);
+  const AddedResiduals added = ResidualsOf(TracksTerm(), input, kTracks);
   EXPECT_EQ(added.residual_vectors, static_cast<int>(tracks.size()));
   EXPECT_NEAR(EnergyOf(MakeRigidGraph(Rigid3d::Identity()), added.residuals),
               25.0 * tracks.size() / (found.size() + tracks.size()), 1e-3);
@@ -95,7 +89,7 @@ TEST(TracksTerm, DepthCountsAsItsKeySays) {
     const Energy terms = ParseEnergy(
         "tracks(depth=" + std::to_string(depth) + ")", BuiltinTerms());
     return EnergyOf(graph,
-                    ResidualsOf(*terms[0].term, input, kOptions).residuals);
+                    ResidualsOf(*terms[0].term, input, kTracks).residuals);
   };
   const double across = energy(0);  // Deeper, their pixels are others.
   const double z = 1.05, pixel = z / camera.fx;
@@ -111,7 +105,7 @@ TEST(TracksTerm, DepthCountsAsItsKeySays) {
 TEST(TracksTerm, IsNothingWithoutTracks) {
   const std::vector<Correspondence> found = PlateMovedBy({0.1, 0, 0});
   const DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  EXPECT_EQ(ResidualsOf(TracksTerm(), {graph, found, PinholeCamera()}, kOptions)
+  EXPECT_EQ(ResidualsOf(TracksTerm(), {graph, found, PinholeCamera()}, kTracks)
                 .residual_vectors,
             0);
 }

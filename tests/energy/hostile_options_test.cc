@@ -12,15 +12,6 @@
 namespace splitfusion {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-TermOptions Weight(double weight) { return {"hostile", weight}; }
-
-TermOptions Loss(LossKind loss, double scale) {
-  return {"hostile", 1, loss, scale};
-}
-
 std::vector<HostileCase> OptionCases() {
   const std::string weight = "hostile.weight = ", scale = "hostile.scale = ";
   std::vector<HostileCase> cases = {

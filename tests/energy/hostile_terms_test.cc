@@ -13,9 +13,6 @@
 namespace splitfusion {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 std::shared_ptr<HostileTerm> Tuple(const std::vector<int>& nodes) {
   return Adding([nodes](const EnergyInput&, ResidualSink* sink) {
     sink->AddNodes({nodes}, std::vector<SpoiledNode>(1));
@@ -43,12 +40,6 @@ std::shared_ptr<HostileTerm> Total(double total) {
     sink->AddWarpedPoints(samples, std::vector<SpoiledPoint>(samples.size()),
                           total);
   });
-}
-
-TermOptions Weight(double weight) { return {"hostile", weight}; }
-
-TermOptions Loss(LossKind loss, double scale) {
-  return {"hostile", 1, loss, scale};
 }
 
 std::vector<HostileCase> FunctorCases() {

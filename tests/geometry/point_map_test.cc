@@ -10,14 +10,14 @@
 namespace splitfusion {
 namespace {
 
-constexpr PinholeCamera kCamera = {64, 48, 260, 260, 31.5, 23.5};
+constexpr PinholeCamera kMapCamera = {64, 48, 260, 260, 31.5, 23.5};
 
 /// Depth of the plane n . X = d.
 cv::Mat_<float> PlaneDepth(const Eigen::Vector3d& n, double d) {
-  cv::Mat_<float> depth(kCamera.height, kCamera.width);
+  cv::Mat_<float> depth(kMapCamera.height, kMapCamera.width);
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 0; u < depth.cols; ++u) {
-      const Eigen::Vector3d ray = kCamera.BackProject<double>(u, v, 1);
+      const Eigen::Vector3d ray = kMapCamera.BackProject<double>(u, v, 1);
       depth(v, u) = static_cast<float>(d / n.dot(ray));
     }
   }
@@ -28,12 +28,12 @@ Eigen::Vector3d ToEigen(const cv::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
 TEST(ComputePointMap, PlaneHasItsNormalEverywhere) {
   const Eigen::Vector3d n = Eigen::Vector3d(0.3, -0.4, 1).normalized();
-  const PointMap map = ComputePointMap(PlaneDepth(n, 1.2), kCamera);
-  for (int v = 0; v < kCamera.height; ++v) {
-    for (int u = 0; u < kCamera.width; ++u) {
+  const PointMap map = ComputePointMap(PlaneDepth(n, 1.2), kMapCamera);
+  for (int v = 0; v < kMapCamera.height; ++v) {
+    for (int u = 0; u < kMapCamera.width; ++u) {
       EXPECT_NEAR(n.dot(ToEigen(map.points(v, u))), 1.2, 1e-5);
       // At the very corners less than a third of the window is there.
-      if (u % (kCamera.width - 1) == 0 && v % (kCamera.height - 1) == 0) {
+      if (u % (kMapCamera.width - 1) == 0 && v % (kMapCamera.height - 1) == 0) {
         continue;
       }
       // Towards the camera.
@@ -45,7 +45,7 @@ TEST(ComputePointMap, PlaneHasItsNormalEverywhere) {
 TEST(ComputePointMap, MissingDepthHasNeitherPointNorNormal) {
   cv::Mat_<float> depth = PlaneDepth({0, 0, 1}, 1);
   depth(20, 30) = 0;
-  const PointMap map = ComputePointMap(depth, kCamera);
+  const PointMap map = ComputePointMap(depth, kMapCamera);
   EXPECT_EQ(map.points(20, 30), cv::Vec3f(0, 0, 0));
   EXPECT_EQ(map.normals(20, 30), cv::Vec3f(0, 0, 0));
   EXPECT_NEAR(map.normals(20, 31)[2], -1, 1e-5);
@@ -54,26 +54,28 @@ TEST(ComputePointMap, MissingDepthHasNeitherPointNorNormal) {
 TEST(ComputePointMap, NormalsDoNotMixTheTwoSidesOfAStep) {
   cv::Mat_<float> depth = PlaneDepth({0, 0, 1}, 1);
   depth.colRange(32, 64).setTo(1.5f);
-  const PointMap map = ComputePointMap(depth, kCamera);
+  const PointMap map = ComputePointMap(depth, kMapCamera);
   for (const int u : {30, 31, 32, 33}) {
     EXPECT_NEAR(map.normals(24, u)[2], -1, 1e-5) << u;
   }
 }
 
 TEST(ComputePointMap, SpecksHaveNoNormal) {
-  cv::Mat_<float> depth(kCamera.height, kCamera.width, 0.0f);
+  cv::Mat_<float> depth(kMapCamera.height, kMapCamera.width, 0.0f);
   depth(10, 10) = 1;
   depth(10, 11) = 1;
-  EXPECT_EQ(ComputePointMap(depth, kCamera).normals(10, 10),
+  EXPECT_EQ(ComputePointMap(depth, kMapCamera).normals(10, 10),
             cv::Vec3f(0, 0, 0));
 }
 
 TEST(ComputePointMap, RejectsForeignImagesAndOptions) {
-  EXPECT_THROW(ComputePointMap(cv::Mat(48, 64, CV_16UC1), kCamera), InputError);
-  EXPECT_THROW(ComputePointMap(cv::Mat(47, 64, CV_32FC1), kCamera), InputError);
+  EXPECT_THROW(ComputePointMap(cv::Mat(48, 64, CV_16UC1), kMapCamera),
+               InputError);
+  EXPECT_THROW(ComputePointMap(cv::Mat(47, 64, CV_32FC1), kMapCamera),
+               InputError);
   PointMapOptions options;
   options.radius = 0;
-  EXPECT_THROW(ComputePointMap(PlaneDepth({0, 0, 1}, 1), kCamera, options),
+  EXPECT_THROW(ComputePointMap(PlaneDepth({0, 0, 1}, 1), kMapCamera, options),
                InputError);
 }
 

@@ -223,7 +223,8 @@ TEST(Checkpoint, WhatIsHeldGoesOn) {
 }
 
 /// A board that begins to move to the right in frame 8.
-void AddBoard(int frame, Frame* input, std::vector<InstanceMask>* detections) {
+void AddRollingBoard(int frame, Frame* input,
+                     std::vector<InstanceMask>* detections) {
   const cv::Rect at(30 + 2 * std::max(0, frame - 8), 35, 30, 35);
   input->depth(at) = 2.0;
   input->color(at) = cv::Scalar(40, 90, 160);
@@ -237,7 +238,7 @@ TEST(Checkpoint, AThingThatBeginsToMoveGoesOn) {
   story.scene.scene = SyntheticSceneKind::kRoom;
   story.scene.frames = 36;
   story.scene.camera_motion = 0;
-  story.script = AddBoard;
+  story.script = AddRollingBoard;
   const Record record = RunUndisturbed(story);
   EXPECT_EQ(record.events.count("born"), 1u);
   EXPECT_NE(record.files.find("suitcase"), std::string::npos);

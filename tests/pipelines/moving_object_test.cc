@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kStart = 8;  // Frame before the first motion.
 constexpr int kStep = 3;   // Pixels a frame, to the right.
-constexpr int kFrames = 36;
+constexpr int kMovingFrames = 36;
 const cv::Rect kBoard(100, 70, 60, 70);
 
 /// Puts a plain board in front of everything, 2 m away, `shift` pixels to the
@@ -48,7 +48,7 @@ SyntheticOptions EmptyRoom(double camera_motion) {
   SyntheticOptions options = SyntheticRun::Quick();
   options.scene = SyntheticSceneKind::kRoom;
   options.width = 320, options.height = 240;
-  options.frames = kFrames;
+  options.frames = kMovingFrames;
   options.camera_motion = camera_motion;
   return options;
 }
@@ -56,7 +56,7 @@ SyntheticOptions EmptyRoom(double camera_motion) {
 TEST(MovingObject, BecomesARigidSurfaceThatIsTrackedWhenItMoves) {
   SyntheticRun run(EmptyRoom(/*camera_motion=*/0));
   int tracked = 0;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kMovingFrames; ++i) {
     const int shift = kStep * std::max(0, i - kStart);
     const FrameReport report =
         run.Next([&](Frame* frame, std::vector<InstanceMask>* detections) {
@@ -74,10 +74,11 @@ TEST(MovingObject, BecomesARigidSurfaceThatIsTrackedWhenItMoves) {
   ASSERT_NE(board, nullptr);
   EXPECT_EQ(run.fusion().surfaces().size(), 2u);
   EXPECT_EQ(board->kind(), SurfaceKind::kRigid);
-  const int followed = kFrames - 1 - board->first_frame();
+  const int followed = kMovingFrames - 1 - board->first_frame();
   EXPECT_GE(followed, 5);
   EXPECT_EQ(tracked, followed);
-  const cv::Rect at = kBoard + cv::Point(kStep * (kFrames - 1 - kStart), 0);
+  const cv::Rect at =
+      kBoard + cv::Point(kStep * (kMovingFrames - 1 - kStart), 0);
   cv::Mat labels = run.fusion().labels().clone();
   EXPECT_GT(cv::countNonZero(labels(at) == 1), 0.97 * at.area());
   labels(at) = 0;
@@ -87,7 +88,7 @@ TEST(MovingObject, BecomesARigidSurfaceThatIsTrackedWhenItMoves) {
 TEST(MovingObject, IsForgottenByTheBackgroundAsItBeginsToMove) {
   SyntheticRun run(EmptyRoom(/*camera_motion=*/0));
   const Eigen::Vector3d place(0, 0, 1.5), step(0.002, 0, -0.003);
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kMovingFrames; ++i) {
     const int steps = std::max(0, i - kStart);
     run.Next([&](Frame* frame, std::vector<InstanceMask>* detections) {
       AddBall(place + steps * step, run.fusion().camera(), frame, detections);
@@ -111,7 +112,7 @@ TEST(MovingObject, AChairThatNobodyMovesStaysBackground) {
   PipelineOptions options;
   options.own_motion_gain = 0;
   SyntheticRun unwatched(EmptyRoom(/*camera_motion=*/1), options);
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kMovingFrames; ++i) {
     for (const SplitDecision& decision : run.Next().decisions) {
       EXPECT_EQ(decision.class_name, "chair");
       EXPECT_EQ(decision.action, "ignored") << i;

@@ -58,15 +58,16 @@ class Descent : public Solver {
   SolverOptions options_;
 };
 
-struct Tracked {
+struct TrackedCorner {
   bool succeeded = false;
   double error = 0;  ///< Metres.
   SurfaceReport report;
 };
 
 /// The corner of a room, tracked by what the options and registries say.
-Tracked TrackCorner(const std::string& association, const std::string& solver,
-                    int iterations, const Registries& registries) {
+TrackedCorner TrackCorner(const std::string& association,
+                          const std::string& solver, int iterations,
+                          const Registries& registries) {
   const Rigid3d motion = MakeMotion({0.01, -0.01, 0.01}, {0.02, -0.01, 0.02});
   TrackerOptions options;
   options.association = association;
@@ -78,7 +79,7 @@ Tracked TrackCorner(const std::string& association, const std::string& solver,
       ParseEnergy("point_to_plane(loss=tukey,scale=0.03)", registries.terms),
       registries.associations, registries.solvers);
   DeformationGraph graph = MakeRigidGraph(Rigid3d::Identity());
-  Tracked tracked;
+  TrackedCorner tracked;
   tracked.succeeded =
       tracker.Track(SamplesOf(View(CornerDepth(Rigid3d::Identity()))), {},
                     View(CornerDepth(motion)), 0, Rigid3d::Identity(), &graph,
@@ -93,7 +94,8 @@ TEST(Registries, ASolverOfOnesOwnTracks) {
   registries.solvers.Register("descent", [](const SolverOptions& options) {
     return std::make_unique<Descent>(options);
   });
-  const Tracked tracked = TrackCorner("projective", "descent", 40, registries);
+  const TrackedCorner tracked =
+      TrackCorner("projective", "descent", 40, registries);
   EXPECT_TRUE(tracked.succeeded) << tracked.report.reason;
   EXPECT_EQ(tracked.report.rounds.back().solver.message, "descent");
   EXPECT_LT(tracked.error, 0.003);
@@ -103,7 +105,7 @@ TEST(Registries, ASolverOfOnesOwnTracks) {
 
 TEST(Registries, EveryAssociationTracks) {
   for (const std::string& name : BuiltinAssociations().names()) {
-    const Tracked tracked = TrackCorner(name, "gn_pcg", 1, {});
+    const TrackedCorner tracked = TrackCorner(name, "gn_pcg", 1, {});
     EXPECT_TRUE(tracked.succeeded) << name;
     EXPECT_LT(tracked.error, 0.001) << name;
   }
@@ -128,7 +130,7 @@ TEST(Registries, AnAssociationOfOnesOwnHasItsOwnReasons) {
                                    [](const LiveView&, std::uint16_t) {
                                      return std::make_unique<Nothing>();
                                    });
-  const Tracked tracked = TrackCorner("nothing", "gn_pcg", 1, registries);
+  const TrackedCorner tracked = TrackCorner("nothing", "gn_pcg", 1, registries);
   EXPECT_FALSE(tracked.succeeded);
   const AssociationCounts& counts = tracked.report.rounds.back().association;
   EXPECT_EQ(Rejected(counts, "not_in_the_mood"), counts.model_points);

@@ -15,7 +15,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kFrames = 12;
+constexpr int kSharedFrames = 12;
 
 /// Result of processing the first frames of a sequence.
 struct Outcome {
@@ -51,7 +51,7 @@ std::map<int, double> FitToDepth(const SplitFusion& fusion,
 
 Outcome Process(const std::string& sequence) {
   ReaderOptions options;
-  options.max_frames = kFrames;
+  options.max_frames = kSharedFrames;
   ImageFolderReader reader(sequence, options);
   Outcome outcome;
   outcome.fusion = std::make_unique<SplitFusion>(
@@ -76,8 +76,8 @@ TEST(SharedData, WalkingXyzIsTracked) {
   SKIP_WITHOUT_SHARED_DATA(sequence, "walking_xyz");
   const Outcome outcome = Process(sequence);
   EXPECT_EQ(outcome.fusion->trajectory().size(),
-            static_cast<std::size_t>(kFrames));
-  EXPECT_EQ(outcome.tracked.at(0), kFrames - 1);
+            static_cast<std::size_t>(kSharedFrames));
+  EXPECT_EQ(outcome.tracked.at(0), kSharedFrames - 1);
   EXPECT_LE(outcome.lost, 1);
   EXPECT_LT(
       CompareTrajectories(outcome.fusion->trajectory(),
@@ -95,8 +95,8 @@ TEST(SharedData, SnoopyIsTrackedByACameraThatStands) {
   const Surface& toy = *outcome.fusion->surfaces().rbegin()->second;
   EXPECT_EQ(toy.kind(), SurfaceKind::kNonRigid);
   EXPECT_GT(toy.graph().size(), 30);
-  EXPECT_GE(outcome.tracked.at(toy.id()), kFrames - 3);
-  EXPECT_EQ(outcome.tracked.at(0), kFrames - 1);
+  EXPECT_GE(outcome.tracked.at(toy.id()), kSharedFrames - 3);
+  EXPECT_EQ(outcome.tracked.at(0), kSharedFrames - 1);
   for (const TimedPose& pose : outcome.fusion->trajectory()) {
     EXPECT_LT(pose.world_from_camera.translation().norm(), 0.010);
   }

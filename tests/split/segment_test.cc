@@ -21,12 +21,12 @@ Segment Claim(int surface, const cv::Rect& rect, float evidence) {
 
 const LabelImage kNothing(120, 160, std::uint16_t(0));
 constexpr int kMinIsland = 60;
-const cv::Mat kDepth(120, 160, CV_32FC1, cv::Scalar(2));
+const cv::Mat kWall(120, 160, CV_32FC1, cv::Scalar(2));
 
 TEST(ComposeSegments, TheStrongerClaimWins) {
   const LabelImage labels = ComposeSegments(
       {Claim(5, {10, 10, 40, 40}, 0.2f), Claim(7, {30, 10, 40, 40}, 0.6f)},
-      kNothing, kDepth, kMinIsland);
+      kNothing, kWall, kMinIsland);
   EXPECT_EQ(labels(20, 20), 1);
   EXPECT_EQ(labels(20, 40), 2);
   EXPECT_EQ(labels(20, 60), 2);
@@ -51,15 +51,15 @@ TEST(ComposeSegments, DropsIslands) {
   segment.foreground.colRange(55, 60) = 0;
   segment.foreground(island) = 255;
   const LabelImage labels =
-      ComposeSegments({segment}, kNothing, kDepth, kMinIsland);
+      ComposeSegments({segment}, kNothing, kWall, kMinIsland);
   EXPECT_EQ(labels(17, 67), 0);
   EXPECT_EQ(cv::countNonZero(labels), 40 * 40);
-  EXPECT_EQ(ComposeSegments({segment}, kNothing, kDepth, 0)(17, 67), 1);
+  EXPECT_EQ(ComposeSegments({segment}, kNothing, kWall, 0)(17, 67), 1);
 }
 
 TEST(ComposeSegments, PixelsWithoutDepthTakeTheMaskClosed) {
   Segment segment = Claim(1, {10, 10, 60, 40}, 0.2f);
-  cv::Mat depth = kDepth.clone();
+  cv::Mat depth = kWall.clone();
   const cv::Rect shadow(30, 20, 10, 10);
   depth(shadow) = 0.0;
   segment.foreground(shadow - segment.evidence.crop.tl()) = 0;
@@ -76,7 +76,7 @@ TEST(ComposeSegments, PixelsWithoutDepthTakeTheMaskClosed) {
 TEST(ComposeSegments, WithoutDetectionTheProjectionFillsHoles) {
   Segment segment = Claim(3, {10, 10, 60, 40}, 0.2f);
   segment.mask.release();
-  cv::Mat depth = kDepth.clone();
+  cv::Mat depth = kWall.clone();
   const cv::Rect shadow(30, 20, 20, 20);
   depth(shadow) = 0.0;
   segment.foreground(shadow - segment.evidence.crop.tl()) = 0;

@@ -130,6 +130,12 @@ Unknown Named(const std::string& name, double initial, double scale) {
   return {name, "", initial, scale};
 }
 
+TermOptions Weight(double weight) { return {"hostile", weight}; }
+
+TermOptions Loss(LossKind loss, double scale) {
+  return {"hostile", 1, loss, scale};
+}
+
 std::shared_ptr<HostileTerm> Adding(Add add) {
   auto term = std::make_shared<HostileTerm>();
   term->add = std::move(add);

@@ -44,6 +44,14 @@ std::string NameOf(const ::testing::TestParamInfo<HostileCase>& info);
 /// one that deforms.
 void ExpectEnd(const HostileCase& hostile);
 
+/// Values that no option takes.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Options of the term, of this weight or loss.
+TermOptions Weight(double weight);
+TermOptions Loss(LossKind loss, double scale);
+
 /// What a term adds.
 using Add = std::function<void(const EnergyInput&, ResidualSink*)>;
 

@@ -50,6 +50,12 @@ std::vector<Correspondence> PerfectAssociation(
   return correspondences;
 }
 
+std::vector<Correspondence> PlateMovedBy(const Eigen::Vector3d& way) {
+  return PerfectAssociation(
+      PlateMesh(0.1, 0.1, 0.02, 1), MakeRigidGraph(Rigid3d::Identity()),
+      [&](const Eigen::Vector3d& p) -> Eigen::Vector3d { return p + way; });
+}
+
 TriangleMesh CornerMesh(double step) {
   constexpr double kSize = 0.2;
   TriangleMesh mesh = PlateMesh(kSize, kSize, step, 1);

@@ -15,6 +15,9 @@ std::vector<Correspondence> PerfectAssociation(
     const TriangleMesh& mesh, const DeformationGraph& graph,
     const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& live);
 
+/// Pairs of a plate of 0.1 m with itself, moved (metres).
+std::vector<Correspondence> PlateMovedBy(const Eigen::Vector3d& way);
+
 /// Three plates of 0.2 m that meet in a corner: every motion shows.
 TriangleMesh CornerMesh(double step);
 

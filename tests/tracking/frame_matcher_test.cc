@@ -10,7 +10,7 @@
 namespace splitfusion {
 namespace {
 
-const PinholeCamera kCamera{320, 240, 260, 260, 160, 120};
+const PinholeCamera kMatchedCamera{320, 240, 260, 260, 160, 120};
 constexpr float kDepth = 1.3f;
 const cv::Rect kCard(60, 80, 80, 80);
 
@@ -28,7 +28,7 @@ LiveView ViewOfCard(const cv::Point& way) {
   cv::Mat color = RandomColor(1, {320, 240});
   RandomColor(2, kCard.size()).copyTo(color(kCard + way));
   LiveView live =
-      MakeLiveView(kCamera, cv::Mat_<float>(240, 320, kDepth), color);
+      MakeLiveView(kMatchedCamera, cv::Mat_<float>(240, 320, kDepth), color);
   live.labels.setTo(1);
   return live;
 }
@@ -44,7 +44,7 @@ CardMatches Matched(const FrameMatcher& matcher, const LiveView& live,
   const Eigen::Vector3f step(way.x * kDepth / 260, way.y * kDepth / 260, 0);
   CardMatches card;
   for (const PointMotion& motion : matcher.Match(1, live, nullptr)) {
-    const auto pixel = kCamera.PixelOf(motion.from);
+    const auto pixel = kMatchedCamera.PixelOf(motion.from);
     if (!kCard.contains({pixel->x(), pixel->y()})) continue;
     ++card.all;
     card.right += (motion.to - motion.from - step).norm() < 0.008f;
@@ -76,7 +76,7 @@ TEST(FrameMatcher, FollowsFlowWhereThatComesBack) {
   int right = 0, all = 0;
   const Eigen::Vector3f step(3 * kDepth / 260, 2 * kDepth / 260, 0);
   for (const PointMotion& motion : matches) {
-    const auto pixel = kCamera.PixelOf(motion.from);
+    const auto pixel = kMatchedCamera.PixelOf(motion.from);
     if (!(kCard - cv::Size(16, 16) + cv::Point(8, 8))
              .contains({pixel->x(), pixel->y()})) {
       continue;

@@ -10,10 +10,11 @@
 namespace splitfusion {
 namespace {
 
-const PinholeCamera kCamera{320, 240, 260, 260, 160, 120};
-constexpr float kDepth = 1.3f;
+const PinholeCamera kTracksCamera{320, 240, 260, 260, 160, 120};
+constexpr float kTracksDepth = 1.3f;
 
-/// A plate at kDepth, surface 1, that fills the image and moves through it.
+/// A plate at kTracksDepth, surface 1, that fills the image and moves through
+/// it.
 LiveView ViewOfPlate(const cv::Point2f& way) {
   cv::Mat color(240, 320, CV_8UC3);
   cv::RNG random(1);
@@ -23,8 +24,8 @@ LiveView ViewOfPlate(const cv::Point2f& way) {
   const cv::Matx23f shift(1, 0, way.x, 0, 1, way.y);
   cv::warpAffine(color, color, shift, color.size(), cv::INTER_LINEAR,
                  cv::BORDER_REFLECT);
-  LiveView live =
-      MakeLiveView(kCamera, cv::Mat_<float>(240, 320, kDepth), color);
+  LiveView live = MakeLiveView(kTracksCamera,
+                               cv::Mat_<float>(240, 320, kTracksDepth), color);
   live.labels.setTo(1);
   return live;
 }
@@ -35,8 +36,8 @@ std::vector<ModelSample> PlateSamples() {
   for (int v = 60; v < 180; v += 2) {
     for (int u = 80; u < 240; u += 2) {
       ModelSample sample;
-      sample.point = kCamera.BackProject<float>(static_cast<float>(u),
-                                                static_cast<float>(v), kDepth);
+      sample.point = kTracksCamera.BackProject<float>(
+          static_cast<float>(u), static_cast<float>(v), kTracksDepth);
       sample.normal = -Eigen::Vector3f::UnitZ();
       sample.u = u;
       sample.v = v;
@@ -93,11 +94,12 @@ TEST(PointTracks, ArePointsOfTheModelSeenWhereTheyHaveMoved) {
   }
   const std::vector<TrackedPoint> points = plate.Find(live);
   EXPECT_GT(points.size(), 0.9 * begun);
-  const Eigen::Vector3f way(20 * kDepth / 260, -10 * kDepth / 260, 0);
+  const Eigen::Vector3f way(20 * kTracksDepth / 260, -10 * kTracksDepth / 260,
+                            0);
   for (const TrackedPoint& point : points) {
     EXPECT_LT((point.target - point.model.point - way).norm(), 0.001);
     EXPECT_EQ(point.model.skinning.count, 1);
-    EXPECT_NEAR(point.weight, DepthNoise().Confidence(kDepth), 1e-3);
+    EXPECT_NEAR(point.weight, DepthNoise().Confidence(kTracksDepth), 1e-3);
   }
 }
 
@@ -156,7 +158,7 @@ TEST(PointTracks, BeginOnDepthAlone) {
   plate.tracks().End(1);
   LiveView live = ViewOfPlate({0, 0});
   plate.Follow(live);
-  live.depth.colRange(0, 160) = kDepth + 0.03f;
+  live.depth.colRange(0, 160) = kTracksDepth + 0.03f;
   plate.tracks().Begin(1, plate.samples(), WarpField(plate.graph()), live);
   EXPECT_NEAR(static_cast<double>(plate.count()), 15 * 10, 15);
   for (const PointTrack& track : plate.tracks().Of(1)) {
@@ -169,10 +171,10 @@ TEST(PointTracks, WhatIsHiddenOrBehindSomethingIsNotFound) {
   LiveView live = ViewOfPlate({0, 0});
   plate.Follow(live);
   const std::size_t all = plate.Find(live).size();
-  live.depth.colRange(0, 160) = kDepth - 0.15f;
+  live.depth.colRange(0, 160) = kTracksDepth - 0.15f;
   EXPECT_NEAR(static_cast<double>(plate.Find(live).size()), all / 2.0, 15);
   EXPECT_EQ(plate.Find(live, 0.2).size(), all);
-  live.depth.setTo(kDepth);
+  live.depth.setTo(kTracksDepth);
   // The lower half of the model is not in view.
   plate.samples().resize(plate.samples().size() / 2);
   EXPECT_NEAR(static_cast<double>(plate.Find(live).size()), all / 2.0, 30);

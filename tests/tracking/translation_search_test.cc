@@ -7,7 +7,7 @@
 namespace splitfusion {
 namespace {
 
-const PinholeCamera kCamera{320, 240, 260, 260, 160, 120};
+const PinholeCamera kSearchCamera{320, 240, 260, 260, 160, 120};
 
 /// A rectangle of the image, parallel to it.
 struct Plate {
@@ -24,7 +24,7 @@ LiveView ViewOf(const std::vector<Plate>& plates) {
     depth(plate.area) = plate.depth;
     color(plate.area) = cv::Scalar::all(plate.grey);
   }
-  LiveView live = MakeLiveView(kCamera, depth, color);
+  LiveView live = MakeLiveView(kSearchCamera, depth, color);
   for (const Plate& plate : plates) live.labels(plate.area) = 1;
   return live;
 }
@@ -38,7 +38,7 @@ std::vector<ModelSample> SamplesOf(const std::vector<Plate>& plates) {
     for (int v = area.y; v < area.br().y; v += 2) {
       for (int u = area.x; u < area.br().x; u += 2) {
         ModelSample sample;
-        sample.point = kCamera.BackProject<float>(
+        sample.point = kSearchCamera.BackProject<float>(
             static_cast<float>(u), static_cast<float>(v), plate.depth);
         sample.normal = -Eigen::Vector3f::UnitZ();
         const float grey = static_cast<float>(plate.grey) / 255;

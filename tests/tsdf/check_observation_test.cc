@@ -11,10 +11,10 @@
 namespace splitfusion {
 namespace {
 
-const TsdfOptions kOptions = {0.01, 0.04, 64};
+const TsdfOptions kCheckedOptions = {0.01, 0.04, 64};
 
 TsdfOptions WithoutColor() {
-  TsdfOptions options = kOptions;
+  TsdfOptions options = kCheckedOptions;
   options.has_color = false;
   return options;
 }
@@ -24,7 +24,7 @@ DepthObservation Wall() {
 }
 
 TEST(CheckObservation, AllImagesHaveTheCamerasSize) {
-  CheckObservation(Wall(), kOptions);
+  CheckObservation(Wall(), kCheckedOptions);
   const cv::Size half(80, 120);
   const auto expect_refused = [&](const char* name,
                                   auto DepthObservation::*image) {
@@ -44,17 +44,17 @@ TEST(CheckObservation, AVolumeWithColourNeedsAColourImage) {
   DepthObservation observation = Wall();
   observation.color.release();
   CheckObservation(observation, WithoutColor());
-  ExpectInputError([&] { CheckObservation(observation, kOptions); },
+  ExpectInputError([&] { CheckObservation(observation, kCheckedOptions); },
                    "color image is 0x0: expected 160x120");
   observation.color = cv::Mat::zeros(120, 160, CV_8UC1);
-  ExpectInputError([&] { CheckObservation(observation, kOptions); },
+  ExpectInputError([&] { CheckObservation(observation, kCheckedOptions); },
                    "color image is of type 0: expected 8UC3 (16)");
 }
 
 TEST(CheckObservation, WarpedFusionRefusesWhatIsMissing) {
   const DeformationGraph graph =
       CoverWithNodes(PlateMesh(0.1, 0.1, 0.01, 1), 0.03);
-  TsdfVolume volume(kOptions);
+  TsdfVolume volume(kCheckedOptions);
   AllocateAround(graph.positions, 0.05, &volume);
   DepthObservation observation = Wall();
   observation.color.release();

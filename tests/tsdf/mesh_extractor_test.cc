@@ -16,7 +16,7 @@
 namespace splitfusion {
 namespace {
 
-const TsdfOptions kOptions = {0.01, 0.03, 12};
+const TsdfOptions kMeshOptions = {0.01, 0.03, 12};
 constexpr double kMinWeight = 0.5;
 
 /// A ball that rolls past, in front of a wall, seen by a moving camera.
@@ -75,7 +75,7 @@ TriangleMesh MeshByOpenVdb(const TsdfVolume& volume) {
 }
 
 TEST(MeshExtractor, IsOpenVdbsMesh) {
-  TsdfVolume volume(kOptions);
+  TsdfVolume volume(kMeshOptions);
   for (int frame = 0; frame < 5; ++frame) FuseFrame(frame, &volume);
   const TriangleMesh expected = MeshByOpenVdb(volume);
   const TriangleMesh mesh = ExtractMesh(volume, kMinWeight);
@@ -85,7 +85,7 @@ TEST(MeshExtractor, IsOpenVdbsMesh) {
 }
 
 TEST(MeshExtractor, ChangesAreMeshedAsIfAllWereMeshedAnew) {
-  TsdfVolume volume(kOptions);
+  TsdfVolume volume(kMeshOptions);
   MeshExtractor extractor;
   for (int frame = 0; frame < 8; ++frame) {
     FuseFrame(frame, &volume);
@@ -96,7 +96,7 @@ TEST(MeshExtractor, ChangesAreMeshedAsIfAllWereMeshedAnew) {
 }
 
 TEST(MeshExtractor, RefusesWeightsWhoseChangesItIsNotTold) {
-  TsdfVolume volume(kOptions);
+  TsdfVolume volume(kMeshOptions);
   FuseFrame(0, &volume);
   MeshExtractor extractor;
   const double above = MeshExtractor::kMaxMinWeight + 1;
@@ -106,7 +106,7 @@ TEST(MeshExtractor, RefusesWeightsWhoseChangesItIsNotTold) {
 
 TEST(MeshExtractor, VoxelsThatGetTheLargestMinWeightAreMeshed) {
   // Nothing but weights changes: the same frame again and again.
-  TsdfVolume volume(kOptions);
+  TsdfVolume volume(kMeshOptions);
   MeshExtractor extractor;
   std::size_t vertices = 0;
   for (int i = 0; i < 10; ++i) {
@@ -120,7 +120,7 @@ TEST(MeshExtractor, VoxelsThatGetTheLargestMinWeightAreMeshed) {
 }
 
 TEST(MeshExtractor, TellsWhichVerticesAreUntouched) {
-  TsdfVolume volume(kOptions);
+  TsdfVolume volume(kMeshOptions);
   MeshExtractor extractor;
   FuseFrame(0, &volume);
   const TriangleMesh before = extractor.Extract(volume, kMinWeight);
@@ -150,7 +150,7 @@ TEST(MeshExtractor, TellsWhichVerticesAreUntouched) {
 }
 
 TEST(MeshExtractor, DoesNotDependOnTheNumberOfThreads) {
-  TsdfVolume volume(kOptions);
+  TsdfVolume volume(kMeshOptions);
   FuseFrame(2, &volume);
   const TriangleMesh parallel = ExtractMesh(volume, kMinWeight);
   const tbb::global_control one_thread(

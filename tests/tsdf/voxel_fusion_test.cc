@@ -22,7 +22,7 @@ namespace {
 
 constexpr float kVoxel = 0.01f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-const TsdfOptions kOptions = {kVoxel, 0.04, 20, /*reach_sigmas=*/3};
+const TsdfOptions kFusionOptions = {kVoxel, 0.04, 20, /*reach_sigmas=*/3};
 
 /// A block's voxels.
 struct Block {
@@ -124,7 +124,7 @@ bool PixelOf(const PinholeCamera& camera, const Eigen::Vector3d& p, int* u,
 bool UpdateVoxel(const DepthObservation& seen, const float dither[],
                  const Eigen::Vector3d& p, int i, Block* block) {
   constexpr double kMargin = 1e-5;
-  const double truncation = kOptions.truncation;
+  const double truncation = kFusionOptions.truncation;
   int u, v;
   bool is_certain;
   if (!PixelOf(seen.camera, p, &u, &v, &is_certain)) return is_certain;
@@ -163,7 +163,8 @@ bool UpdateVoxel(const DepthObservation& seen, const float dither[],
     block->color[i] = Blend(block->color[i], seen.color.at<cv::Vec3b>(v, u),
                             blend, dither[i % 8], &is_certain);
   }
-  block->weight[i] = static_cast<float>(std::min(sum, kOptions.max_weight));
+  block->weight[i] =
+      static_cast<float>(std::min(sum, kFusionOptions.max_weight));
   return is_certain;
 }
 
@@ -215,7 +216,7 @@ class VoxelFusion : public ::testing::Test {
  protected:
   std::mt19937 random_{7};
   DepthObservation seen_ = RandomObservation(&random_);
-  FusionImage image_{seen_, kOptions, /*time=*/3};
+  FusionImage image_{seen_, kFusionOptions, /*time=*/3};
 };
 
 /// Steps as FuseRigidLeaf() has them.
@@ -229,7 +230,7 @@ struct Steps {
 TEST_F(VoxelFusion, ARigidBlockIsUpdatedVoxelByVoxel) {
   int changed_blocks = 0, uncertain = 0;
   seen_.others_refute = true;
-  const FusionImage refuting(seen_, kOptions, /*time=*/3);
+  const FusionImage refuting(seen_, kFusionOptions, /*time=*/3);
   for (int round = 0; round < 600; ++round) {
     seen_.others_refute = round >= 300;
     const FusionImage& image = seen_.others_refute ? refuting : image_;
@@ -286,12 +287,12 @@ TEST_F(VoxelFusion, BoxesAreBoundedByTheFarthestPixelTheyMayMeet) {
   const int middle = seen_.role.cols / 2;
   seen_.role.colRange(middle, seen_.role.cols)
       .setTo(static_cast<int>(PixelRole::kCarve));
-  const FusionImage image(seen_, kOptions, 1);
+  const FusionImage image(seen_, kFusionOptions, 1);
   const auto farthest = [&](const Eigen::Vector3f& center) {
     const Eigen::Vector3f half = Eigen::Vector3f::Constant(0.02f);
     return image.Farthest({center - half, center + half});
   };
-  const auto truncation = static_cast<float>(kOptions.truncation);
+  const auto truncation = static_cast<float>(kFusionOptions.truncation);
   EXPECT_NEAR(farthest({-0.3f, 0, 1}), 1 + truncation, 2e-3);
   EXPECT_NEAR(farthest({0.3f, 0, 1}), 1 - truncation, 2e-3);
   EXPECT_EQ(farthest({0, 0, 0.05f}), kInfinity);  // Around the camera.
@@ -364,7 +365,7 @@ TEST_F(VoxelFusion, AWarpedBlockIsUpdatedWhereItsLatticeCarriesIt) {
 TEST_F(VoxelFusion, IntoForeignCellsOnlyFreeSpaceIsFused) {
   // Blocks before, in and behind a wall at 1 m.
   seen_ = ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1));
-  const FusionImage image(seen_, kOptions, 1);
+  const FusionImage image(seen_, kFusionOptions, 1);
   const bool foreign[kLatticeCells] = {true, false, false, true,
                                        true, true,  false, false};
   for (const float z : {0.5f, 0.98f, 1.01f}) {

@@ -12,8 +12,8 @@
 namespace splitfusion {
 namespace {
 
-constexpr double kVoxel = 0.005;
-const TsdfOptions kOptions = {kVoxel, 0.03, 64};
+constexpr double kWarpedVoxel = 0.005;
+const TsdfOptions kWarpedOptions = {kWarpedVoxel, 0.03, 64};
 
 /// A plate around the optical axis at z = 1 m, canonical frame.
 TriangleMesh CenteredPlate() {
@@ -44,7 +44,7 @@ class WarpedIntegration : public ::testing::Test {
   WarpedIntegration()
       : graph_(CoverWithNodes(CenteredPlate(), 0.03)),
         index_(graph_, 6),
-        volume_(kOptions) {
+        volume_(kWarpedOptions) {
     AllocateAround(graph_.positions, kReach, &volume_);
   }
 
@@ -66,7 +66,7 @@ TEST_F(WarpedIntegration, ARigidWarpIsRigidIntegration) {
   const TriangleMesh live =
       Moved([&](const Eigen::Vector3d& p) { return motion * p; });
   Integrate(live);
-  TsdfVolume rigid(kOptions);
+  TsdfVolume rigid(kWarpedOptions);
   AllocateAround(graph_.positions, kReach, &rigid);
   IntegrateRigid(ObserveAll(Camera(), MeshDepth(Camera(), live)), motion,
                  &rigid);
@@ -93,9 +93,9 @@ TEST_F(WarpedIntegration, ABentPlateComesBackFlat) {
   double sum = 0;
   for (const Eigen::Vector3f& v : mesh.vertices) {
     sum += std::abs(v.z() - 1);
-    EXPECT_LT(std::abs(v.z() - 1), 1.0 * kVoxel);  // Bent by 22 mm.
+    EXPECT_LT(std::abs(v.z() - 1), 1.0 * kWarpedVoxel);  // Bent by 22 mm.
   }
-  EXPECT_LT(sum / mesh.vertices.size(), 0.3 * kVoxel);
+  EXPECT_LT(sum / mesh.vertices.size(), 0.3 * kWarpedVoxel);
 }
 
 TEST_F(WarpedIntegration, MotionsThroughTimeFuseIntoOnePlate) {
@@ -110,13 +110,13 @@ TEST_F(WarpedIntegration, MotionsThroughTimeFuseIntoOnePlate) {
   const TriangleMesh mesh = ExtractMesh(volume_, 3.5);
   ASSERT_GT(mesh.vertices.size(), 1200u);
   for (const Eigen::Vector3f& v : mesh.vertices) {
-    off += std::abs(v.z() - 1) > 0.5 * kVoxel;
+    off += std::abs(v.z() - 1) > 0.5 * kWarpedVoxel;
   }
   EXPECT_LT(off, 0.02 * mesh.vertices.size());
 }
 
 TEST_F(WarpedIntegration, SkinningFollowsTheGraph) {
-  TsdfVolume control(kOptions);
+  TsdfVolume control(kWarpedOptions);
   AllocateAround(graph_.positions, kReach, &control);
   const DepthObservation seen =
       ObserveAll(Camera(), MeshDepth(Camera(), CenteredPlate()));
@@ -153,7 +153,7 @@ TEST_F(WarpedIntegration, SkinningFollowsTheGraph) {
 TEST_F(WarpedIntegration, SkinningFollowsAGraphThatForgetsNodes) {
   // Blocks of the far end are then beyond the reach of every node.
   constexpr double kShortReach = 0.03;
-  TsdfVolume control(kOptions);
+  TsdfVolume control(kWarpedOptions);
   AllocateAround(graph_.positions, kReach, &control);
   const DepthObservation seen =
       ObserveAll(Camera(), MeshDepth(Camera(), CenteredPlate()));
@@ -260,7 +260,7 @@ TEST_F(WarpedIntegration, BlocksOutOfReachAreLeftAlone) {
   AppendMesh(Moved([&](const Eigen::Vector3d& p) { return aside * p; }), &live);
   Integrate(live);
   for (const Eigen::Vector3f& v : ExtractMesh(volume_, 0.5).vertices) {
-    EXPECT_LT(v.x(), 0.15 + kReach + 8 * kVoxel);
+    EXPECT_LT(v.x(), 0.15 + kReach + 8 * kWarpedVoxel);
   }
 }
 
