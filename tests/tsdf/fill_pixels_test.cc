@@ -15,7 +15,7 @@ namespace splitfusion {
 namespace internal {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 constexpr float kTruncation = 0.02f;
 
 /// With noise of 10 mm at every depth.
@@ -56,7 +56,7 @@ void ExpectPixels(int count, const FusionView& view, float carving) {
     const auto role = static_cast<PixelRole>(row.role[u]);
     const bool writes = role == PixelRole::kWrite;
     if (!(row.depth[u] > 0) || !(writes || role == PixelRole::kCarve)) {
-      EXPECT_EQ(pixels[u].depth, -kInfinity) << u << " of " << count;
+      EXPECT_EQ(pixels[u].depth, -kUnbounded) << u << " of " << count;
       EXPECT_EQ(pixels[u].weight, 0);
       EXPECT_EQ(reach[u], 1);
       continue;
