@@ -129,7 +129,7 @@ void GroundTruthWriter::WriteTracks() const {
                                 static_cast<std::uint32_t>(trajectory_.size()),
                                 static_cast<std::uint32_t>(points.size())},
                                &out);
-    for (const TrackPoint& point : points) {
+    for (const ScenePoint& point : points) {
       WriteValues<std::int32_t>({point.instance, point.triangle}, &out);
       WriteValues<float>({point.b1, point.b2}, &out);
     }

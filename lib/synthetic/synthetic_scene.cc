@@ -53,15 +53,15 @@ std::vector<double> CumulativeAreas(const TriangleMesh& mesh) {
 }
 
 /// Points of equal share of the area, each at a random place of its triangle.
-std::vector<TrackPoint> SampleSurface(const TriangleMesh& mesh, int instance,
+std::vector<ScenePoint> SampleSurface(const TriangleMesh& mesh, int instance,
                                       int count, std::uint32_t seed) {
   const std::vector<double> sums = CumulativeAreas(mesh);
-  std::vector<TrackPoint> points;
+  std::vector<ScenePoint> points;
   for (int i = 0; i < count; ++i) {
     const double at =
         (i + HashUnit(i, 0, instance, seed)) / count * sums.back();
     const auto found = std::lower_bound(sums.begin(), sums.end(), at);
-    TrackPoint point;
+    ScenePoint point;
     point.instance = instance;
     point.triangle = static_cast<int>(
         std::min<std::ptrdiff_t>(found - sums.begin(), sums.size() - 1));
@@ -257,7 +257,7 @@ std::vector<Vector3f> SyntheticScene::TrackPositions(int frame) const {
     vertices[instance.id] = PosedVertices(instance.id, frame);
   }
   std::vector<Vector3f> positions;
-  for (const TrackPoint& point : track_points_) {
+  for (const ScenePoint& point : track_points_) {
     const auto& posed = vertices.at(point.instance);
     const Eigen::Vector3i& t =
         RestMesh(point.instance).mesh.triangles[point.triangle];

@@ -41,7 +41,7 @@ struct SyntheticFrame {
 
 /// A point that sticks to the surface of an instance: (1 - b1 - b2) v0 + b1 v1
 /// + b2 v2 of a triangle of its posed mesh.
-struct TrackPoint {
+struct ScenePoint {
   int instance = 0;  ///< Instance id.
   int triangle = 0;  ///< Index in the posed mesh.
   float b1 = 0;      ///< Barycentric weight of the second corner.
@@ -103,7 +103,7 @@ class SyntheticScene {
   TriangleMesh PosedMesh(int instance, int frame) const;
 
   /// Points spread evenly over the non-rigid instances, by instance.
-  const std::vector<TrackPoint>& track_points() const { return track_points_; }
+  const std::vector<ScenePoint>& track_points() const { return track_points_; }
 
   /// World positions of track_points() in a frame, metres.
   std::vector<Eigen::Vector3f> TrackPositions(int frame) const;
@@ -127,7 +127,7 @@ class SyntheticScene {
   BodyMotion body_motion_;
   std::unique_ptr<const SoftObject> soft_object_;
   std::vector<SyntheticInstance> instances_;
-  std::vector<TrackPoint> track_points_;
+  std::vector<ScenePoint> track_points_;
 };
 
 }  // namespace splitfusion

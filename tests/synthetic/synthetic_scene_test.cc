@@ -165,7 +165,7 @@ TEST(SyntheticScene, VisibleTracksLieOnTheTrueDepth) {
 
 TEST(SyntheticScene, TracksAreSpreadOverBothDeformingInstances) {
   int person = 0, toy = 0;
-  for (const TrackPoint& point : Scene().track_points()) {
+  for (const ScenePoint& point : Scene().track_points()) {
     person += point.instance == kPersonId;
     toy += point.instance == kSoftObjectId;
     EXPECT_GE(point.b1, 0);
@@ -180,7 +180,7 @@ TEST(SyntheticScene, TracksStickToTheirTriangles) {
   for (const int frame : {0, 31}) {
     const auto positions = Scene().TrackPositions(frame);
     const TriangleMesh mesh = Scene().PosedMesh(kPersonId, frame);
-    const TrackPoint& p = Scene().track_points().front();
+    const ScenePoint& p = Scene().track_points().front();
     ASSERT_EQ(p.instance, kPersonId);
     const Eigen::Vector3i& t = mesh.triangles[p.triangle];
     const Vector3f expected = (1 - p.b1 - p.b2) * mesh.vertices[t[0]] +
