@@ -88,8 +88,9 @@ endfunction()
 # their own stay alone. For sources of the calling folder.
 function(splitfusion_keep_apart)
   foreach(source ${ARGN})
-    file(STRINGS "${source}" clones REGEX "include.*base/vector_clones.h|pragma GCC optimize")
-    if(clones)
+    file(STRINGS "${source}" pragmas
+         REGEX "include.*base/vector_clones.h|pragma GCC optimize")
+    if(pragmas)
       set_source_files_properties("${source}" PROPERTIES
                                   SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
