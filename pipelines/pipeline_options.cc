@@ -67,6 +67,10 @@ void PipelineOptions::List(OptionList* list) {
   list->Part("", &tracker);
   list->Part("", &point_tracks);
   list->Part("", &match);
+  list->Demand(match.feature_model.empty() ||
+                   (match.features && tracker.part_start.parts.count > 0),
+               "feature_model",
+               "an empty one, or --match_features and --parts above 0");
   list->Part("", &solver);
   list->Part("", &split);
   list->Part("ray_", &ray_cast);

@@ -45,6 +45,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   report.segment_seconds = prepared.segment_seconds;
   live_ = std::move(prepared.live);
   frame_ = {frame.index, frame.timestamp, &prepared.detections, &trajectory_};
+  if (options_.tracker.part_start.parts.count > 0) matcher_.Begin(live_);
   PredictMotions(frame.world_from_camera);
   Split(prepared, &report);
   if (!surfaces_.empty()) {
@@ -389,6 +390,7 @@ void SplitFusion::Fuse(FrameReport* report) {
     reports[i].refuted_nodes = surface.Fuse(live_);
     reports[i].fuse_seconds = stopwatch.Restart();
     if (!surface.is_ray_cast()) surface.UpdateMesh();
+    reports[i].torn_triangles = surface.Tear(live_);
     reports[i].mesh_seconds = stopwatch.Restart();
   });
 }

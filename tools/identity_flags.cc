@@ -42,31 +42,14 @@ namespace fs = std::filesystem;
 /// Flags that say where something is, whose content counts instead, or that
 /// leave the result as it is.
 const std::set<std::string>& Uncounted() {
-  static const std::set<std::string> names = {"checkpoint_every",
-                                              "class_names",
-                                              "color_camera",
-                                              "energy",
-                                              "keep_same",
-                                              "labels",
-                                              "masks",
-                                              "max_frames",
-                                              "model",
-                                              "output",
-                                              "resume",
-                                              "overwrite",
-                                              "help_terms",
-                                              "print_identity",
-                                              "print_options",
-                                              "sequence",
-                                              "set",
-                                              "terms",
-                                              "terms_library",
-                                              "threads",
-                                              "trajectory",
-                                              "intrinsics",
-                                              "depth_scale",
-                                              "skip_bad_frames",
-                                              "from"};
+  static const std::set<std::string> names = {
+      "checkpoint_every", "class_names", "color_camera",   "energy",
+      "feature_model",    "keep_same",   "labels",         "masks",
+      "max_frames",       "model",       "output",         "resume",
+      "overwrite",        "help_terms",  "print_identity", "print_options",
+      "sequence",         "set",         "terms",          "terms_library",
+      "threads",          "trajectory",  "intrinsics",     "depth_scale",
+      "skip_bad_frames",  "from"};
   return names;
 }
 
@@ -229,6 +212,8 @@ RunIdentity IdentityFromFlags(const ImageFolderReader& reader,
   identity.parts["input.labels"] = FileHash(FLAGS_labels);
   identity.parts["input.from"] = FileHash(
       FLAGS_from.empty() ? "" : RunPaths(FLAGS_from).KeptCheckpoint(FLAGS_at));
+  identity.parts["input.feature_model"] =
+      FileHash(MethodFlags().match.feature_model);
   identity.parts["input.model"] = FileHash(FLAGS_model);
   identity.parts["input.class_names"] = FileHash(FLAGS_class_names);
   identity.parts["method"] = MethodHash();

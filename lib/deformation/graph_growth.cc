@@ -218,6 +218,8 @@ void GraphOptions::List(OptionList* list) {
   list->Number("refuted_frames", &refuted_frames, Range::AtLeast(0), "frames",
                "A part of a deforming surface that hangs in free space in so "
                "many frames on end is forgotten; 0 = never.");
+  list->Switch("tear", &tear,
+               "What stretches beyond what a surface can is torn.");
   list->Number("refuted_share", &refuted_share, Range::Share(), "",
                "Such parts wait until they are this share of the nodes.");
 }
@@ -254,7 +256,8 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
 NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
                        const GraphOptions& options, const SkinningIndex& index,
                        const MeshSkinning& skinning, DeformationGraph* graph,
-                       GraphRecord* record, MotionHistory* history) {
+                       GraphRecord* record, MotionHistory* history,
+                       bool retie) {
   const NodeChange none = NodeChange::None(graph->size());
   if (skinning.skinning().empty()) return none;
   NodeChange change{
@@ -262,14 +265,17 @@ NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
       NodesToKeep(skinning.skinning(), graph->size(), &record->carried)};
   double batch = options.growth_batch * graph->size();
   const int room = options.max_nodes - graph->size();
-  if (room <= 0 && (change.none() || change.forgotten() < batch)) return none;
+  if (!retie && room <= 0 && (change.none() || change.forgotten() < batch))
+    return none;
   // The last nodes that there is room for do not wait.
   if (change.forgotten() == 0) batch = std::min<double>(batch, room);
   const NewNodes added = FindNewNodes(
       canonical_mesh, options, skinning.supports(),
       static_cast<int>(change.kept.size()), record->planned_spacing);
   change.added = static_cast<int>(added.vertices.size());
-  if (change.none() || change.added + change.forgotten() < batch) return none;
+  if (!retie && (change.none() || change.added + change.forgotten() < batch)) {
+    return none;
+  }
   std::vector<Eigen::Vector3f> places;
   for (const int vertex : added.vertices) {
     places.push_back(canonical_mesh.vertices[vertex]);

@@ -33,6 +33,9 @@ struct GraphOptions {
   /// What nodes carry that live depth refutes in so many frames on end is
   /// forgotten, see RefutedParts; 0: never, and it is fused as the rest.
   int refuted_frames = 3;
+  /// What stretches beyond what a surface can is torn: parts that touched when
+  /// they were seen first hang together no more.
+  bool tear = true;
   /// Refuted nodes wait until they are so many, as a part of the graph's;
   /// meanwhile they are carved as the rest.
   double refuted_share = 0.02;
@@ -79,11 +82,13 @@ struct GraphRecord {
 /// exceeded the spacing is raised, from the planned one, and the new nodes are
 /// as many as fit; the graph keeps the widest.
 ///
-/// @return what became of the nodes; edges are rebuilt only if anything did.
+/// @return what became of the nodes; edges are rebuilt if anything did, or with
+///     `retie`.
 NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
                        const GraphOptions& options, const SkinningIndex& index,
                        const MeshSkinning& skinning, DeformationGraph* graph,
-                       GraphRecord* record, MotionHistory* history);
+                       GraphRecord* record, MotionHistory* history,
+                       bool retie = false);
 
 }  // namespace splitfusion
 

@@ -25,6 +25,18 @@ double StretchedFrom(const TriangleMesh& canonical) {
   return std::max(kStretchedEdge, 2 * longest);
 }
 
+std::vector<Eigen::Vector3i> StretchedTriangles(
+    double length, const std::vector<Eigen::Vector3i>& triangles,
+    const std::vector<Eigen::Vector3f>& warped) {
+  std::vector<Eigen::Vector3i> stretched;
+  for (const Eigen::Vector3i& triangle : triangles) {
+    if (TriangleCorners(warped, triangle).LongestEdge() > length) {
+      stretched.push_back(triangle);
+    }
+  }
+  return stretched;
+}
+
 StretchedArea CutStretched(double length, TriangleMesh* mesh) {
   StretchedArea result;
   const auto is_stretched = [&](const Eigen::Vector3i& triangle) {

@@ -1,6 +1,9 @@
 #ifndef SPLITFUSION_LIB_GEOMETRY_STRETCHED_AREA_H_
 #define SPLITFUSION_LIB_GEOMETRY_STRETCHED_AREA_H_
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
 namespace splitfusion {
@@ -29,6 +32,12 @@ struct StretchedArea {
 /// the canonical mesh: kStretchedEdge, or where voxels are coarse twice the
 /// longest edge there is.
 double StretchedFrom(const TriangleMesh& canonical);
+
+/// Those of the triangles that have an edge longer than `length`, where their
+/// vertices are `warped`; metres.
+std::vector<Eigen::Vector3i> StretchedTriangles(
+    double length, const std::vector<Eigen::Vector3i>& triangles,
+    const std::vector<Eigen::Vector3f>& warped);
 
 /// Takes the triangles with an edge longer than `length` out of a warped mesh
 /// (metres), and returns what there was; the vertices stay.

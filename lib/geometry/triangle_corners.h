@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <vector>
 
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
@@ -14,11 +15,13 @@ struct TriangleCorners {
   Eigen::Vector3f b;  ///< Second.
   Eigen::Vector3f c;  ///< Third.
 
+  /// Those of the triangle `t` of these vertices.
+  TriangleCorners(const std::vector<Eigen::Vector3f>& vertices,
+                  const Eigen::Vector3i& t)
+      : a(vertices[t[0]]), b(vertices[t[1]]), c(vertices[t[2]]) {}
   /// Those of the mesh's triangle `t`.
   TriangleCorners(const TriangleMesh& mesh, const Eigen::Vector3i& t)
-      : a(mesh.vertices[t[0]]),
-        b(mesh.vertices[t[1]]),
-        c(mesh.vertices[t[2]]) {}
+      : TriangleCorners(mesh.vertices, t) {}
 
   /// Twice the area, along the outward normal.
   Eigen::Vector3f Cross() const { return (b - a).cross(c - a); }
@@ -28,6 +31,8 @@ struct TriangleCorners {
   float LongestEdge() const {
     return std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
   }
+  /// Of the three.
+  Eigen::Vector3f Middle() const { return (a + b + c) / 3; }
   /// Least z of the three.
   float Nearest() const { return std::min({a.z(), b.z(), c.z()}); }
 };

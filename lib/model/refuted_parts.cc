@@ -6,12 +6,10 @@
 #include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
-namespace {
 
-/// What the live pixel of a point says about it; of the surface's own pixels
-/// alone that it is there.
 DepthState LookAt(const LiveView& live, int surface,
-                  const Eigen::Vector3f& point, float truncation) {
+                  const Eigen::Vector3f& point,
+                  const DepthTolerance<float>& tolerance) {
   const auto pixel = live.camera.PixelOf(point);
   if (!pixel) return DepthState::kUnmeasured;
   const int u = pixel->x(), v = pixel->y();
@@ -19,29 +17,26 @@ DepthState LookAt(const LiveView& live, int surface,
     return DepthState::kUnmeasured;
   }
   const float depth = live.depth(v, u);
-  const DepthState state = ClassifyDepth(
-      depth, point.z(),
-      DepthTolerance<float>{truncation}.At(depth, live.camera.noise));
+  const DepthState state =
+      ClassifyDepth(depth, point.z(), tolerance.At(depth, live.camera.noise));
   return state == DepthState::kObserved && live.labels(v, u) != surface
              ? DepthState::kUnmeasured
              : state;
 }
 
-}  // namespace
-
 void RefutedParts::Look(const LiveView& live, int surface,
                         const std::vector<Eigen::Vector3f>& warped,
                         const std::vector<Skinning>& skinning, int nodes,
                         double truncation) {
+  const DepthTolerance<float> tolerance{static_cast<float>(truncation)};
   std::vector<DepthState> states(warped.size());
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, warped.size(), 4096),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          states[i] =
-              LookAt(live, surface, warped[i], static_cast<float>(truncation));
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, warped.size(), 4096),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end();
+                           ++i) {
+                        states[i] = LookAt(live, surface, warped[i], tolerance);
+                      }
+                    });
   std::vector<float> free(nodes, 0), there(nodes, 0);
   std::vector<char> carries(nodes, false);
   for (std::size_t i = 0; i < warped.size(); ++i) {

@@ -8,8 +8,15 @@
 #include "splitfusion/lib/deformation/node_change.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/frame/live_view.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
+
+/// What the live pixel of a point says about it (camera frame, metres); of the
+/// pixels of its surface alone that it is there.
+DepthState LookAt(const LiveView& live, int surface,
+                  const Eigen::Vector3f& point,
+                  const DepthTolerance<float>& tolerance);
 
 /// Counts for every node of a deforming surface the frames on end in which live
 /// depth refutes what it carries: most of it hangs in free space, since depth

@@ -8,7 +8,10 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/median.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 #include "splitfusion/lib/geometry/mesh_pieces.h"
+#include "splitfusion/lib/geometry/stretched_area.h"
+#include "splitfusion/lib/geometry/triangle_corners.h"
 #include "splitfusion/lib/model/canonical_places.h"
 #include "splitfusion/lib/model/observe_surface.h"
 #include "splitfusion/lib/tsdf/forget_voxels.h"
@@ -205,24 +208,44 @@ int Surface::ForgetRefuted() {
   return count;
 }
 
+int Surface::Tear(const LiveView& live) {
+  if (!graph_options_.tear || kind_ == SurfaceKind::kRigid) return 0;
+  const std::vector<Eigen::Vector3f> warped = WarpedVertices();
+  std::vector<Eigen::Vector3f> places;
+  for (const Eigen::Vector3i& t :
+       StretchedTriangles(StretchedFrom(mesh_), mesh_.triangles, warped)) {
+    if (LookAt(live, id_, TriangleCorners(warped, t).Middle(), kNoiseAlone) !=
+        DepthState::kFree) {
+      continue;
+    }
+    for (int k = 0; k < 3; ++k) places.push_back(mesh_.vertices[t[k]]);
+  }
+  if (places.empty()) return 0;
+  ForgetAround(places, options_.tsdf.voxel_size, &volume_);
+  UpdateMeshAndGraph(/*retie=*/true);
+  return static_cast<int>(places.size() / 3);
+}
+
 void Surface::FinishMesh() {
   mesh_ = WithoutSmallPieces(ExtractMesh(volume_, options_.min_mesh_weight),
                              options_.min_piece_area);
   mesh_skinning_ = MeshSkinning(*index_, mesh_.vertices);
 }
 
-void Surface::UpdateMesh() {
+void Surface::UpdateMesh() { UpdateMeshAndGraph(/*retie=*/false); }
+
+void Surface::UpdateMeshAndGraph(bool retie) {
   mesh_ = mesh_extractor_.Extract(volume_, options_.min_mesh_weight);
   mesh_skinning_.FollowMesh(*index_, mesh_.vertices,
                             mesh_extractor_.kept_from());
-  if (kind_ == SurfaceKind::kNonRigid) UpdateGraphOverMesh();
+  if (kind_ == SurfaceKind::kNonRigid) UpdateGraphOverMesh(retie);
 }
 
-void Surface::UpdateGraphOverMesh() {
+void Surface::UpdateGraphOverMesh(bool retie) {
   const NodeChange change =
       UpdateGraph(mesh_, graph_options_, *index_, mesh_skinning_, &graph_,
-                  &graph_record_, &history_);
-  if (change.none()) return;
+                  &graph_record_, &history_, retie);
+  if (change.none() && !retie) return;
   refuted_.Follow(change);
   auto updated = std::make_unique<SkinningIndex>(
       graph_, graph_options_.neighbors_per_point);

@@ -82,6 +82,13 @@ class Surface {
   /// Extracts the canonical mesh; its graph follows it.
   void UpdateMesh();
 
+  /// Tears a deforming surface where it is stretched more than a surface
+  /// stretches and live depth shows nothing between: what touched when it was
+  /// first seen, an arm and the chest, hangs together no more. Its mesh has a
+  /// gap there, and the graph is tied along what is left. Returns the number of
+  /// triangles.
+  int Tear(const LiveView& live);
+
   /// Extracts the final canonical mesh, without small pieces.
   void FinishMesh();
 
@@ -150,7 +157,8 @@ class Surface {
   void PlaceGraph(const LiveView& live);
   int FuseWarped(const LiveView& live, DepthObservation* observation);
   int ForgetRefuted();
-  void UpdateGraphOverMesh();
+  void UpdateMeshAndGraph(bool retie);
+  void UpdateGraphOverMesh(bool retie);
   /// Makes what Serialize() leaves out.
   void RestoreCaches();
 

@@ -53,6 +53,7 @@ struct SurfaceReport {
   int track_points = 0;     ///< Points that were followed into this frame.
   int started_parts = 0;    ///< Parts that started elsewhere, see PartStarter.
   int refuted_nodes = 0;    ///< Nodes whose parts were forgotten.
+  int torn_triangles = 0;   ///< That joined what has moved apart.
   int vertices = 0;         ///< Of the mesh.
   double residual_rms = 0;  ///< Point-to-plane, last round, metres.
   std::optional<HoldReport> hold;     ///< If covariances were asked for.

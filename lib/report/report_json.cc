@@ -70,6 +70,7 @@ void to_json(Json& json, const SurfaceReport& surface) {
           {"track_points", surface.track_points},
           {"started_parts", surface.started_parts},
           {"refuted_nodes", surface.refuted_nodes},
+          {"torn_triangles", surface.torn_triangles},
           {"reason", surface.reason},
           {"pixels", surface.pixels},
           {"exposure", surface.exposure},

@@ -56,16 +56,19 @@ std::string OneLine(const cv::Exception& error) {
   return text;
 }
 
-cv::Size ImageSize(const OnnxGraph& graph, const std::string& path) {
+cv::Size ImageSize(const OnnxGraph& graph, const std::string& path,
+                   int channels) {
   if (graph.inputs.size() != 1) {
     throw InputError(path + ": " + std::to_string(graph.inputs.size()) +
                      " inputs: expected one, an image");
   }
   const std::vector<int>& shape = graph.inputs[0].shape;
   if (shape.empty()) return {};
-  if (shape.size() != 4 || shape[0] > 1 || (shape[1] != 3 && shape[1] != 0)) {
+  if (shape.size() != 4 || shape[0] > 1 ||
+      (shape[1] != channels && shape[1] != 0)) {
     throw InputError(path + ": input '" + graph.inputs[0].name + "' is " +
-                     ShapeText(shape) + ": expected 1x3xHxW, one image");
+                     ShapeText(shape) + ": expected 1x" +
+                     std::to_string(channels) + "xHxW, one image");
   }
   if (shape[2] <= 0 || shape[3] <= 0) return {};
   return {shape[3], shape[2]};
@@ -86,11 +89,11 @@ struct OnnxNetwork::Net {
   cv::dnn::Net net;  ///< Ready to run.
 };
 
-OnnxNetwork::OnnxNetwork(const std::string& path) : path_(path) {
+OnnxNetwork::OnnxNetwork(const std::string& path, int channels) : path_(path) {
   const std::string bytes = ReadBytes(path);
   const OnnxGraph graph = ReadOnnxGraph(bytes, path);
   fingerprint_ = Fingerprint(bytes);
-  input_size_ = ImageSize(graph, path);
+  input_size_ = ImageSize(graph, path, channels);
   for (const OnnxValue& output : graph.outputs) {
     output_names_.push_back(output.name);
     outputs_.push_back(output.name + " " + ShapeText(output.shape));

@@ -14,9 +14,10 @@ namespace splitfusion {
 /// OpenCV's threads. The same input gives the same output.
 class OnnxNetwork {
  public:
+  /// `channels`: of the image, 3 or 1.
   /// @throw InputError if the file is missing, is not ONNX, has other than one
   ///     input or one that is no image, or holds what OpenCV does not take.
-  explicit OnnxNetwork(const std::string& path);
+  explicit OnnxNetwork(const std::string& path, int channels = 3);
   ~OnnxNetwork();
 
   /// File of the network.
@@ -31,7 +32,7 @@ class OnnxNetwork {
   ///     that it has.
   void CheckOutputs(const std::vector<std::string>& names) const;
 
-  /// Outputs for one input of 1x3xHxW, in the order of `names`.
+  /// Outputs for one input of 1xCxHxW, in the order of `names`.
   ///
   /// @throw InputError if OpenCV cannot run the network on it.
   std::vector<NetworkTensor> Forward(const cv::Mat& input,

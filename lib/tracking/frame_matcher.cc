@@ -1,9 +1,9 @@
 #include "splitfusion/lib/tracking/frame_matcher.h"
 
 #include <cmath>
-#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
 
 namespace splitfusion {
 namespace {
@@ -14,36 +14,10 @@ constexpr std::uint16_t kNone = 0xffff;  // Layout.
 constexpr int kWindowMargin = 24;
 /// Flow that differs more from a feature within that is wrong, pixels.
 constexpr double kAgreeing = 3;
-/// Least contrast of a feature, of a grey range of 1.
-constexpr double kContrast = 0.02;
-
 cv::Rect Around(cv::Rect box, int margin, const cv::Size& size) {
   box -= cv::Point(margin, margin);
   box += cv::Size(2 * margin, 2 * margin);
   return box & cv::Rect({}, size);
-}
-
-/// Features of the points of a surface.
-struct Features {
-  std::vector<cv::Point2f> pixels;
-  cv::Mat descriptors;  // Unit length, a row each.
-};
-
-Features FeaturesIn(const cv::Mat_<std::uint8_t>& grey, const cv::Rect& box,
-                    const cv::Mat_<std::uint8_t>& mask) {
-  Features found;
-  std::vector<cv::KeyPoint> points;
-  cv::SIFT::create(0, 3, kContrast)
-      ->detectAndCompute(grey(box), mask(box), points, found.descriptors);
-  for (const cv::KeyPoint& point : points) {
-    found.pixels.push_back(point.pt + cv::Point2f(box.tl()));
-  }
-  for (int row = 0; row < found.descriptors.rows; ++row) {
-    cv::Mat descriptor = found.descriptors.row(row);
-    cv::sqrt(descriptor / std::max(1.0, cv::norm(descriptor, cv::NORM_L1)),
-             descriptor);
-  }
-  return found;
 }
 
 /// Flow but for what features beside it contradict, and the features.
@@ -66,28 +40,6 @@ std::vector<PixelMatch> WithFeatures(const std::vector<PixelMatch>& flow,
   return matches;
 }
 
-/// For every row of `products`, cosines, the column that is best by far, see
-/// MatchOptions::ratio; -1: none.
-std::vector<int> BestColumns(const cv::Mat_<float>& products, double ratio) {
-  std::vector<int> best(products.rows, -1);
-  for (int row = 0; row < products.rows; ++row) {
-    float first = -1, second = -1;
-    for (int column = 0; column < products.cols; ++column) {
-      const float product = products(row, column);
-      if (product > first) {
-        second = first, first = product, best[row] = column;
-      } else if (product > second) {
-        second = product;
-      }
-    }
-    const float away = std::acos(std::min(1.0f, first));
-    if (!(away <= ratio * std::acos(std::min(1.0f, second)))) {
-      best[row] = -1;
-    }
-  }
-  return best;
-}
-
 }  // namespace
 
 void MatchOptions::List(OptionList* list) {
@@ -99,20 +51,42 @@ void MatchOptions::List(OptionList* list) {
                "farther off.");
   list->Switch("match_features", &features,
                "Where flow is often lost, features are matched as well.");
+  list->Text("feature_model", &feature_model,
+             "ONNX file of XFeat, whose features these are then; empty: those "
+             "of SIFT.");
+  list->Number("feature_min_score", &min_score, Range::Share(), "",
+               "Features of that network are at least so probable.");
+  list->Number("feature_min_cosine", &min_cosine, {-1, 1}, "",
+               "They are matched if the cosine of the angle between them is at "
+               "least this.");
   list->Number("match_lost_share", &lost_share, Range::Share(), "",
                "That is where it lost a larger share of the points nearby.");
   list->Number("match_reach", &reach, Range::AtLeast(0), "pixels",
                "How far features are looked for.");
-  list->Number("match_ratio", &ratio, Range::Share(), "",
-               "A feature is matched if the angle to the most similar one is "
-               "below this fraction of that to the second.");
+  list->Number(
+      "match_ratio", &ratio, Range::Share(), "",
+      "A feature of SIFT is matched if the angle to the most similar one is "
+      "below this fraction of that to the second.");
+}
+
+FrameMatcher::FrameMatcher(MatchOptions options)
+    : options_(std::move(options)) {
+  if (options_.feature_model.empty()) return;
+  network_ = std::make_unique<FeatureNetwork>(options_.feature_model);
+}
+
+void FrameMatcher::Begin(const LiveView& live) {
+  live_ = {};
+  cv::cvtColor(live.color, live_.grey, cv::COLOR_BGR2GRAY);
+  if (network_ == nullptr) return;
+  live_.features = network_->Find(live_.grey, options_.min_score);
 }
 
 std::vector<PointMotion> FrameMatcher::Match(int surface, const LiveView& live,
                                              const DenseFlow* flow) const {
   std::vector<PixelMatch> matches;
-  if (grey_.empty()) return {};
-  cv::Mat_<float> lost(grey_.size(), 0.f), asked(grey_.size(), 0.f);
+  if (before_.grey.empty()) return {};
+  cv::Mat_<float> lost(surfaces_.size(), 0.f), asked(surfaces_.size(), 0.f);
   for (int v = 0; v < surfaces_.rows; v += options_.spacing) {
     for (int u = 0; u < surfaces_.cols; u += options_.spacing) {
       if (surfaces_(v, u) != surface) continue;
@@ -133,41 +107,35 @@ std::vector<PointMotion> FrameMatcher::Match(int surface, const LiveView& live,
     cv::boxFilter(lost, lost, CV_32F, window);
     cv::boxFilter(asked, asked, CV_32F, window);
     const cv::Mat_<std::uint8_t> often = lost > options_.lost_share * asked;
-    const std::vector<PixelMatch> features = MatchFeatures(
-        live, cv::Mat_<std::uint8_t>(often & (surfaces_ == surface)), surface);
+    const std::vector<PixelMatch> features =
+        MatchFeatures(often & (surfaces_ == surface), live.labels == surface);
     matches = WithFeatures(matches, features);
   }
   return Lifted(matches, surface, live);
 }
 
 std::vector<PixelMatch> FrameMatcher::MatchFeatures(
-    const LiveView& live, const cv::Mat_<std::uint8_t>& region,
-    int surface) const {
-  std::vector<PixelMatch> matches;
+    const cv::Mat_<std::uint8_t>& region,
+    const cv::Mat_<std::uint8_t>& surface) const {
   const cv::Rect box = cv::boundingRect(region);
-  if (box.empty()) return matches;
-  const Features before =
-      FeaturesIn(grey_, Around(box, kWindowMargin, grey_.size()), region);
-  if (before.pixels.empty()) return matches;
-  cv::Mat_<std::uint8_t> grey;
-  cv::cvtColor(live.color, grey, cv::COLOR_BGR2GRAY);
-  const Features now = FeaturesIn(
-      grey, Around(box, static_cast<int>(options_.reach), grey.size()),
-      live.labels == surface);
-  if (now.pixels.empty()) return matches;
-  cv::Mat_<float> products = before.descriptors * now.descriptors.t();
-  for (int i = 0; i < products.rows; ++i) {
-    for (int j = 0; j < products.cols; ++j) {
-      if (cv::norm(before.pixels[i] - now.pixels[j]) > options_.reach) {
-        products(i, j) = -1;
-      }
-    }
+  if (box.empty()) return {};
+  ImageFeatures before, now;
+  LikenessOptions alike{options_.reach};
+  if (network_ != nullptr) {
+    before = FeaturesWithin(before_.features, region);
+    now = FeaturesWithin(live_.features, surface);
+    alike.cosine = options_.min_cosine;
+  } else {
+    const int reach = static_cast<int>(options_.reach);
+    before = SiftFeatures(before_.grey,
+                          Around(box, kWindowMargin, region.size()), region);
+    now = SiftFeatures(live_.grey, Around(box, reach, surface.size()), surface);
+    alike.ratio = options_.ratio;
   }
-  const std::vector<int> forth = BestColumns(products, options_.ratio);
-  const std::vector<int> back = BestColumns(products.t(), options_.ratio);
-  for (std::size_t i = 0; i < forth.size(); ++i) {
-    if (forth[i] < 0 || back[forth[i]] != static_cast<int>(i)) continue;
-    matches.push_back({before.pixels[i], now.pixels[forth[i]]});
+  std::vector<PixelMatch> matches;
+  for (const auto& [i, j] : AlikeFeatures(before, now, alike)) {
+    matches.push_back(
+        {cv::Point2f(before.pixels[i]), cv::Point2f(now.pixels[j])});
   }
   return matches;
 }
@@ -192,7 +160,8 @@ std::vector<PointMotion> FrameMatcher::Lifted(
 }
 
 void FrameMatcher::Keep(const LiveView& live) {
-  cv::cvtColor(live.color, grey_, cv::COLOR_BGR2GRAY);
+  before_ = std::move(live_);
+  live_ = {};
   depth_ = live.depth.clone();
   surfaces_.create(live.labels.size());
   surfaces_.setTo(kNone);

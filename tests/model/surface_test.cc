@@ -8,6 +8,7 @@
 
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/geometry/stretched_area.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/surface_output.h"
 #include "support/expect_input_error.h"
@@ -169,6 +170,73 @@ TEST(Surface, ForgetsWhatHangsInFreeSpaceButForTheFramesSoFar) {
   EXPECT_EQ(model.graph.parts[1].first_frame, 4);
   EXPECT_EQ(model.graph.parts[1].end_frame, ModelPart::kNoEnd);
   EXPECT_EQ(model.history.frames.size(), 20u);
+}
+
+/// Carries the nodes right of the middle of kWhole by so many metres.
+void MoveRightHalf(float way, Surface* box) {
+  DeformationGraph& graph = *box->mutable_graph();
+  for (int i = 0; i < graph.size(); ++i) {
+    if (SmallCamera().Project(graph.positions[i]).x() > 80) {
+      graph.motions[i].translation.x() += way;
+    }
+  }
+}
+
+/// Edges of its graph that cross the middle of kWhole.
+int EdgesAcross(const DeformationGraph& graph) {
+  const auto right = [&](int node) {
+    return SmallCamera().Project(graph.positions[node]).x() > 80;
+  };
+  int across = 0;
+  for (int i = 0; i < graph.size(); ++i) {
+    for (const int j : graph.neighbors[i]) across += right(i) && !right(j);
+  }
+  return across;
+}
+
+TEST(Surface, IsTornWhereWhatTouchedMovesApart) {
+  constexpr int kWay = 40;  // Pixels, 0.3 m.
+  cv::Mat_<float> depth = WallDepth(SmallCamera(), 1.5);
+  cv::Mat_<std::uint8_t> apart(depth.size(), std::uint8_t{0});
+  const cv::Rect right(80, 40, 30, 40);
+  apart(kHalf) = 1;
+  apart(right + cv::Point(kWay, 0)) = 1;
+  depth.setTo(1.0f, apart);
+  LiveView live = MakeLiveView(SmallCamera(), depth,
+                               PlainColor(SmallCamera(), {10, 200, 30}));
+  live.labels.setTo(1, apart);
+  const auto fused = [&](bool tear) {
+    GraphOptions options;
+    options.tear = tear;
+    Surface box(1, "person", SurfaceKind::kNonRigid, 4, SurfaceOptions(),
+                options);
+    EXPECT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+    for (int frame = 4; frame < 8; ++frame) {
+      EXPECT_EQ(box.Fuse(ViewWithBox(kWhole)), 0);
+      box.UpdateMesh();
+      box.RecordMotions(frame, true);
+    }
+    const int across = EdgesAcross(box.graph());
+    MoveRightHalf(kWay / 130.0f, &box);
+    for (int frame = 8; frame < 12; ++frame) {
+      box.Fuse(live);
+      box.UpdateMesh();
+      const int torn = box.Tear(live);
+      EXPECT_TRUE(frame > 8 || (torn > 0) == tear);
+      box.RecordMotions(frame, true);
+    }
+    EXPECT_GT(across, 10);
+    if (tear) {
+      EXPECT_LT(EdgesAcross(box.graph()), across / 4);
+    } else {
+      EXPECT_GT(EdgesAcross(box.graph()), across / 2);
+    }
+    return StretchedTriangles(kStretchedEdge, box.mesh().triangles,
+                              box.WarpedVertices())
+        .size();
+  };
+  EXPECT_GT(fused(false), 100u);
+  EXPECT_EQ(fused(true), 0u);
 }
 
 TEST(Surface, GrowsAndForgetsInOneFrame) {

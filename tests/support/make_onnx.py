@@ -104,6 +104,23 @@ def yolact():
     return graph
 
 
+def xfeat():
+    """Key points are bright pixels, descriptors the pixels of a cell."""
+    graph = Graph((1, 1, 64, 96))
+    pixels = np.eye(64).reshape(64, 1, 8, 8)
+    logits = np.concatenate([20 * pixels, np.zeros((1, 1, 8, 8))])
+    graph.weight("logits_k", logits)
+    graph.weight("logits_b", np.concatenate([np.zeros(64), [30]]))
+    graph.weight("pixels_k", pixels)
+    graph.add("Conv", ["images", "logits_k", "logits_b"], "keypoint_logits",
+              kernel_shape=[8, 8], strides=[8, 8])
+    graph.add("Conv", ["images", "pixels_k"], "descriptors",
+              kernel_shape=[8, 8], strides=[8, 8])
+    graph.output("keypoint_logits", (1, 65, 8, 12))
+    graph.output("descriptors", (1, 64, 8, 12))
+    return graph
+
+
 def half():
     graph = yolov8seg()
     graph.weight("half_weight", [1.0], np.float16)
@@ -131,6 +148,7 @@ KINDS = {
     "yolov8seg": yolov8seg,
     "yolact": yolact,
     "open_size": lambda: yolov8seg(shape=(1, 3, "height", "width")),
+    "xfeat": xfeat,
     "other_names": lambda: yolov8seg(output0="boxes"),
     "gray": lambda: Graph((1, 1, 64, 96)),
     "half": half,

@@ -33,17 +33,24 @@ LiveView ViewOfCard(const cv::Point& way) {
   return live;
 }
 
+/// Takes a view for the frame before.
+void Keep(FrameMatcher* matcher, const LiveView& live) {
+  matcher->Begin(live);
+  matcher->Keep(live);
+}
+
 /// Matches that begin within the card, and how many of them have the way.
 struct CardMatches {
   int all = 0;
   int right = 0;
 };
 
-CardMatches Matched(const FrameMatcher& matcher, const LiveView& live,
+CardMatches Matched(FrameMatcher* matcher, const LiveView& live,
                     const cv::Point& way) {
+  matcher->Begin(live);
   const Eigen::Vector3f step(way.x * kDepth / 260, way.y * kDepth / 260, 0);
   CardMatches card;
-  for (const PointMotion& motion : matcher.Match(1, live, nullptr)) {
+  for (const PointMotion& motion : matcher->Match(1, live, nullptr)) {
     const auto pixel = kMatchedCamera.PixelOf(motion.from);
     if (!kCard.contains({pixel->x(), pixel->y()})) continue;
     ++card.all;
@@ -54,10 +61,10 @@ CardMatches Matched(const FrameMatcher& matcher, const LiveView& live,
 
 TEST(FrameMatcher, FindsWhatJumpedFartherThanFlowFollows) {
   FrameMatcher matcher{MatchOptions()};
-  EXPECT_TRUE(matcher.Match(1, ViewOfCard({0, 0}), nullptr).empty());
-  matcher.Keep(ViewOfCard({0, 0}));
+  EXPECT_EQ(Matched(&matcher, ViewOfCard({0, 0}), {0, 0}).all, 0);
+  Keep(&matcher, ViewOfCard({0, 0}));
   const cv::Point way(60, -20);
-  const CardMatches card = Matched(matcher, ViewOfCard(way), way);
+  const CardMatches card = Matched(&matcher, ViewOfCard(way), way);
   EXPECT_GT(card.right, 40);
   EXPECT_GT(card.right, 0.8 * card.all);
 }
@@ -65,7 +72,8 @@ TEST(FrameMatcher, FindsWhatJumpedFartherThanFlowFollows) {
 TEST(FrameMatcher, FollowsFlowWhereThatComesBack) {
   const LiveView before = ViewOfCard({0, 0}), live = ViewOfCard({3, 2});
   FrameMatcher matcher{MatchOptions()};
-  matcher.Keep(before);
+  Keep(&matcher, before);
+  matcher.Begin(live);
   cv::Mat_<std::uint8_t> from, to;
   cv::cvtColor(before.color, from, cv::COLOR_BGR2GRAY);
   cv::cvtColor(live.color, to, cv::COLOR_BGR2GRAY);
@@ -89,17 +97,17 @@ TEST(FrameMatcher, FollowsFlowWhereThatComesBack) {
 
 TEST(FrameMatcher, MatchesWithinTheSurfaceOnly) {
   FrameMatcher matcher{MatchOptions()};
-  matcher.Keep(ViewOfCard({0, 0}));
+  Keep(&matcher, ViewOfCard({0, 0}));
   const cv::Point way(60, -20);
   LiveView live = ViewOfCard(way);
   live.labels(kCard + way).setTo(2);
-  EXPECT_EQ(Matched(matcher, live, way).right, 0);
+  EXPECT_EQ(Matched(&matcher, live, way).right, 0);
   EXPECT_TRUE(matcher.Match(3, live, nullptr).empty());
 }
 
 TEST(FrameMatcher, GoesOnAfterItWasRestored) {
   FrameMatcher matcher{MatchOptions()};
-  matcher.Keep(ViewOfCard({0, 0}));
+  Keep(&matcher, ViewOfCard({0, 0}));
   FrameMatcher restored{MatchOptions()};
   std::ostringstream out;
   ArchiveWriter writer(&out);
@@ -109,6 +117,8 @@ TEST(FrameMatcher, GoesOnAfterItWasRestored) {
   ArchiveReader reader(&in, out.str().size(), "matcher.bin");
   reader(restored);
   const LiveView live = ViewOfCard({30, 10});
+  matcher.Begin(live);
+  restored.Begin(live);
   const auto matches = matcher.Match(1, live, nullptr);
   const auto again = restored.Match(1, live, nullptr);
   ASSERT_EQ(matches.size(), again.size());
