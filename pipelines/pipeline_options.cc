@@ -11,8 +11,6 @@ PipelineOptions::PipelineOptions() {
   object.tsdf.voxel_size = 0.005;
   object.tsdf.truncation = 0.030;
   object.min_piece_area = 0.0025;
-  // Not clearly better in the mean of the sequences that were tried.
-  tracker.part_start.parts.count = 0;
 }
 
 void PipelineOptions::List(OptionList* list) {

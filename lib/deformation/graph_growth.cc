@@ -218,8 +218,9 @@ void GraphOptions::List(OptionList* list) {
   list->Number("refuted_frames", &refuted_frames, Range::AtLeast(0), "frames",
                "A part of a deforming surface that hangs in free space in so "
                "many frames on end is forgotten; 0 = never.");
-  list->Switch("tear", &tear,
-               "What stretches beyond what a surface can is torn.");
+  list->Number("tear_voxels", &tear_voxels, Range::AtLeast(0), "voxels",
+               "A deforming surface is torn where an edge of its mesh is "
+               "longer and nothing is seen there; 0 = nowhere.");
   list->Number("refuted_share", &refuted_share, Range::Share(), "",
                "Such parts wait until they are this share of the nodes.");
 }

@@ -33,9 +33,9 @@ struct GraphOptions {
   /// What nodes carry that live depth refutes in so many frames on end is
   /// forgotten, see RefutedParts; 0: never, and it is fused as the rest.
   int refuted_frames = 3;
-  /// What stretches beyond what a surface can is torn: parts that touched when
-  /// they were seen first hang together no more.
-  bool tear = true;
+  /// A surface is torn where an edge of its mesh is longer than so many voxels,
+  /// and nothing is seen there (Surface::Tear()); 0: nowhere.
+  double tear_voxels = 6;
   /// Refuted nodes wait until they are so many, as a part of the graph's;
   /// meanwhile they are carved as the rest.
   double refuted_share = 0.02;

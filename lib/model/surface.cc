@@ -209,11 +209,12 @@ int Surface::ForgetRefuted() {
 }
 
 int Surface::Tear(const LiveView& live) {
-  if (!graph_options_.tear || kind_ == SurfaceKind::kRigid) return 0;
+  const double length = graph_options_.tear_voxels * options_.tsdf.voxel_size;
+  if (length == 0 || kind_ == SurfaceKind::kRigid) return 0;
   const std::vector<Eigen::Vector3f> warped = WarpedVertices();
   std::vector<Eigen::Vector3f> places;
   for (const Eigen::Vector3i& t :
-       StretchedTriangles(StretchedFrom(mesh_), mesh_.triangles, warped)) {
+       StretchedTriangles(length, mesh_.triangles, warped)) {
     if (LookAt(live, id_, TriangleCorners(warped, t).Middle(), kNoiseAlone) !=
         DepthState::kFree) {
       continue;

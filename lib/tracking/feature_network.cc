@@ -8,6 +8,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/segmentation/network_tensor.h"
+#include "splitfusion/lib/sequence/image_file.h"
 
 namespace splitfusion {
 namespace {

@@ -32,10 +32,10 @@ ImageFeatures FeaturesWithin(const ImageFeatures& features,
 
 /// Which two features look alike.
 struct LikenessOptions {
-  double reach = 80;  ///< How far they may be apart, pixels.
+  double reach = 0;  ///< How far they may be apart, pixels.
   /// The angle between them is below this fraction of that to the second best.
   double ratio = 1;
-  double cosine = -1;  ///< The angle's cosine is at least this.
+  double cosine = 0;  ///< The angle's cosine is at least this.
 };
 
 /// Features that are most like each other, in both directions: indices of

@@ -38,6 +38,7 @@ TEST_F(FeatureNetworkTest, FindsWhatMoved) {
     EXPECT_NEAR(cv::norm(before.descriptors.row(row)), 1, 1e-5);
   }
   LikenessOptions options;
+  options.reach = 80;
   options.cosine = 0.95;
   const auto alike = AlikeFeatures(before, now, options);
   int right = 0;
