@@ -387,10 +387,12 @@ void SplitFusion::Fuse(FrameReport* report) {
     if (StateOf(reports[i].id) != TrackState::kTracked) return;
     Surface& surface = *surfaces_.at(reports[i].id);
     Stopwatch stopwatch;
+    // What touched moves apart with the motions, and fusion may join it again.
+    reports[i].torn_triangles = surface.Tear(live_);
     reports[i].refuted_nodes = surface.Fuse(live_);
     reports[i].fuse_seconds = stopwatch.Restart();
     if (!surface.is_ray_cast()) surface.UpdateMesh();
-    reports[i].torn_triangles = surface.Tear(live_);
+    reports[i].torn_triangles += surface.Tear(live_);
     reports[i].mesh_seconds = stopwatch.Restart();
   });
 }

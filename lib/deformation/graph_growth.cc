@@ -220,7 +220,7 @@ void GraphOptions::List(OptionList* list) {
                "many frames on end is forgotten; 0 = never.");
   list->Number("tear_voxels", &tear_voxels, Range::AtLeast(0), "voxels",
                "A deforming surface is torn where an edge of its mesh is "
-               "longer and nothing is seen there; 0 = nowhere.");
+               "longer and nothing is seen before it; 0 = nowhere.");
   list->Number("refuted_share", &refuted_share, Range::Share(), "",
                "Such parts wait until they are this share of the nodes.");
 }

@@ -34,7 +34,7 @@ struct GraphOptions {
   /// forgotten, see RefutedParts; 0: never, and it is fused as the rest.
   int refuted_frames = 3;
   /// A surface is torn where an edge of its mesh is longer than so many voxels,
-  /// and nothing is seen there (Surface::Tear()); 0: nowhere.
+  /// and nothing is seen before it (Surface::Tear()); 0: nowhere.
   double tear_voxels = 6;
   /// Refuted nodes wait until they are so many, as a part of the graph's;
   /// meanwhile they are carved as the rest.

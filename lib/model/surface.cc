@@ -215,8 +215,8 @@ int Surface::Tear(const LiveView& live) {
   std::vector<Eigen::Vector3f> places;
   for (const Eigen::Vector3i& t :
        StretchedTriangles(length, mesh_.triangles, warped)) {
-    if (LookAt(live, id_, TriangleCorners(warped, t).Middle(), kNoiseAlone) !=
-        DepthState::kFree) {
+    const Eigen::Vector3f middle = TriangleCorners(warped, t).Middle();
+    if (LookAt(live, id_, middle, kNoiseAlone) == DepthState::kOccluded) {
       continue;
     }
     for (int k = 0; k < 3; ++k) places.push_back(mesh_.vertices[t[k]]);

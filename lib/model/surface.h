@@ -83,9 +83,9 @@ class Surface {
   void UpdateMesh();
 
   /// Tears a deforming surface where it is stretched more than a surface
-  /// stretches and live depth shows nothing between: what touched when it was
-  /// first seen, an arm and the chest, hangs together no more. Its mesh has a
-  /// gap there, and the graph is tied along what is left. Returns the number of
+  /// stretches and nothing is seen before it: what touched when it was first
+  /// seen, an arm and the chest, hangs together no more. Its mesh has a gap
+  /// there, and the graph is tied along what is left. Returns the number of
   /// triangles.
   int Tear(const LiveView& live);
 

@@ -120,20 +120,19 @@ std::vector<PixelMatch> FrameMatcher::MatchFeatures(
   const cv::Rect box = cv::boundingRect(region);
   if (box.empty()) return {};
   ImageFeatures before, now;
-  LikenessOptions alike{options_.reach};
+  Likeness likeness{options_.reach, options_.ratio, 0};
   if (network_ != nullptr) {
     before = FeaturesWithin(before_.features, region);
     now = FeaturesWithin(live_.features, surface);
-    alike.cosine = options_.min_cosine;
+    likeness = {options_.reach, 1, options_.min_cosine};
   } else {
     const int reach = static_cast<int>(options_.reach);
     before = SiftFeatures(before_.grey,
                           Around(box, kWindowMargin, region.size()), region);
     now = SiftFeatures(live_.grey, Around(box, reach, surface.size()), surface);
-    alike.ratio = options_.ratio;
   }
   std::vector<PixelMatch> matches;
-  for (const auto& [i, j] : AlikeFeatures(before, now, alike)) {
+  for (const auto& [i, j] : AlikeFeatures(before, now, likeness)) {
     matches.push_back(
         {cv::Point2f(before.pixels[i]), cv::Point2f(now.pixels[j])});
   }

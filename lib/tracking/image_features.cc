@@ -10,10 +10,9 @@ namespace {
 /// Least contrast of a feature, of a grey range of 1.
 constexpr double kContrast = 0.02;
 
-/// For every row of `cosines` the column that is best by far, see
-/// LikenessOptions; -1: none.
+/// For every row of `cosines` the column that is best by far; -1: none.
 std::vector<int> BestColumns(const cv::Mat_<float>& cosines,
-                             const LikenessOptions& options) {
+                             const Likeness& likeness) {
   std::vector<int> best(cosines.rows, -1);
   for (int row = 0; row < cosines.rows; ++row) {
     float first = -1, second = -1;
@@ -26,8 +25,8 @@ std::vector<int> BestColumns(const cv::Mat_<float>& cosines,
       }
     }
     const float away = std::acos(std::min(1.0f, first));
-    if (first < options.cosine ||
-        !(away <= options.ratio * std::acos(std::min(1.0f, second)))) {
+    if (first < likeness.cosine ||
+        !(away <= likeness.ratio * std::acos(std::min(1.0f, second)))) {
       best[row] = -1;
     }
   }
@@ -70,19 +69,19 @@ ImageFeatures FeaturesWithin(const ImageFeatures& features,
 
 std::vector<std::pair<int, int>> AlikeFeatures(const ImageFeatures& before,
                                                const ImageFeatures& now,
-                                               const LikenessOptions& options) {
+                                               const Likeness& likeness) {
   std::vector<std::pair<int, int>> alike;
   if (before.pixels.empty() || now.pixels.empty()) return alike;
   cv::Mat_<float> cosines = before.descriptors * now.descriptors.t();
   for (int i = 0; i < cosines.rows; ++i) {
     for (int j = 0; j < cosines.cols; ++j) {
-      if (cv::norm(before.pixels[i] - now.pixels[j]) > options.reach) {
+      if (cv::norm(before.pixels[i] - now.pixels[j]) > likeness.reach) {
         cosines(i, j) = -1;
       }
     }
   }
-  const std::vector<int> forth = BestColumns(cosines, options);
-  const std::vector<int> back = BestColumns(cosines.t(), options);
+  const std::vector<int> forth = BestColumns(cosines, likeness);
+  const std::vector<int> back = BestColumns(cosines.t(), likeness);
   for (std::size_t i = 0; i < forth.size(); ++i) {
     const int row = static_cast<int>(i);
     if (forth[i] >= 0 && back[forth[i]] == row) {

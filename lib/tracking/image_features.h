@@ -31,18 +31,18 @@ ImageFeatures FeaturesWithin(const ImageFeatures& features,
                              const cv::Mat_<std::uint8_t>& mask);
 
 /// Which two features look alike.
-struct LikenessOptions {
-  double reach = 0;  ///< How far they may be apart, pixels.
-  /// The angle between them is below this fraction of that to the second best.
-  double ratio = 1;
-  double cosine = 0;  ///< The angle's cosine is at least this.
+struct Likeness {
+  double reach;   ///< How far they may be apart, pixels.
+  double ratio;   ///< The angle between them is below this fraction of that to
+                  ///< the second best.
+  double cosine;  ///< The angle's cosine is at least this.
 };
 
 /// Features that are most like each other, in both directions: indices of
 /// `before` and `now`.
 std::vector<std::pair<int, int>> AlikeFeatures(const ImageFeatures& before,
                                                const ImageFeatures& now,
-                                               const LikenessOptions& options);
+                                               const Likeness& likeness);
 
 }  // namespace splitfusion
 

@@ -37,10 +37,7 @@ TEST_F(FeatureNetworkTest, FindsWhatMoved) {
   for (int row = 0; row < before.descriptors.rows; ++row) {
     EXPECT_NEAR(cv::norm(before.descriptors.row(row)), 1, 1e-5);
   }
-  LikenessOptions options;
-  options.reach = 80;
-  options.cosine = 0.95;
-  const auto alike = AlikeFeatures(before, now, options);
+  const auto alike = AlikeFeatures(before, now, {80, 1, 0.95});
   int right = 0;
   for (const auto& [i, j] : alike) {
     const cv::Vec2f moved = now.pixels[j] - before.pixels[i];
