@@ -266,8 +266,9 @@ NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
       NodesToKeep(skinning.skinning(), graph->size(), &record->carried)};
   double batch = options.growth_batch * graph->size();
   const int room = options.max_nodes - graph->size();
-  if (!retie && room <= 0 && (change.none() || change.forgotten() < batch))
+  if (!retie && room <= 0 && (change.none() || change.forgotten() < batch)) {
     return none;
+  }
   // The last nodes that there is room for do not wait.
   if (change.forgotten() == 0) batch = std::min<double>(batch, room);
   const NewNodes added = FindNewNodes(

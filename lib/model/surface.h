@@ -85,8 +85,9 @@ class Surface {
   /// Tears a deforming surface where it is stretched more than a surface
   /// stretches and nothing is seen before it: what touched when it was first
   /// seen, an arm and the chest, hangs together no more. Its mesh has a gap
-  /// there, and the graph is tied along what is left. Returns the number of
-  /// triangles.
+  /// there, and the graph is tied along what is left. `live`: of the frame to
+  /// which the motions belong. Returns the number of triangles. Not in the
+  /// paper.
   int Tear(const LiveView& live);
 
   /// Extracts the final canonical mesh, without small pieces.

@@ -23,8 +23,11 @@ class FeatureNetwork {
   ///     outputs are others.
   explicit FeatureNetwork(const std::string& path);
 
-  /// Features whose probability is greatest within two pixels and above
-  /// `min_score`. Not for two threads at a time.
+  /// Features whose probability is greatest within two pixels of the network's
+  /// image and above `min_score`; pixels are those of `grey`, of any size. Not
+  /// for two threads at a time.
+  ///
+  /// @throw InputError if the outputs are of other shapes.
   ImageFeatures Find(const cv::Mat_<std::uint8_t>& grey, double min_score);
 
  private:
