@@ -13,9 +13,9 @@
 namespace splitfusion {
 
 /// What the live pixel of a point (camera frame, metres) says about it, depths
-/// within `tolerance` being equal: nothing at depth edges, beside other surfaces
-/// and outside of the image; of the pixels of its surface alone that it is
-/// there.
+/// within `tolerance` being equal: nothing at depth edges, beside other
+/// surfaces and outside of the image; of the pixels of its surface alone that
+/// it is there.
 DepthState LookAt(const LiveView& live, int surface,
                   const Eigen::Vector3f& point,
                   const DepthTolerance<float>& tolerance);
