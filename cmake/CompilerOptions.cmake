@@ -85,14 +85,16 @@ endfunction()
 
 # Unity builds (CMAKE_UNITY_BUILD), which tools/build_release.sh makes, take half
 # the time: a few files are compiled as one. Files with optimisation pragmas of
-# their own stay alone. For sources of the calling folder.
+# their own stay alone, and read their headers below these pragmas: functions of
+# headers precompiled without them, std::max too, are not inlined, and the loops
+# that call them not vectorised. For sources of the calling folder.
 function(splitfusion_keep_apart)
   foreach(source ${ARGN})
     file(STRINGS "${source}" pragmas
          REGEX "include.*base/vector_clones.h|pragma GCC optimize")
     if(pragmas)
       set_source_files_properties("${source}" PROPERTIES
-                                  SKIP_UNITY_BUILD_INCLUSION ON)
+        SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
     endif()
   endforeach()
 endfunction()
