@@ -13,6 +13,13 @@ using Change = std::function<void(PipelineOptions*)>;
 const std::map<std::string, Change>& Presets() {
   static const std::map<std::string, Change> presets = {
       {"splitfusion", [](PipelineOptions*) {}},
+      {"online",
+       [](PipelineOptions* o) {
+         o->object.tsdf.voxel_size = 0.006F;
+         o->tracker.settled = 0.01;
+         o->tracker.part_start.parts.count = 0;
+         o->point_tracks.spacing = 0;
+       }},
       {"kinectfusion", [](PipelineOptions* o) { o->split_scene = false; }},
       {"dynamicfusion",
        [](PipelineOptions* o) {

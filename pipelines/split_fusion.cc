@@ -412,6 +412,8 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
       const double share = track.usual_pixels > 0 ? 1.0 / kUsualFrames : 1;
       track.usual_pixels += share * (object.pixels - track.usual_pixels);
     }
+    // Of a cost that is no number the model is not to blame.
+    if (!object.rounds.empty() && !object.rounds.back().solver.usable) continue;
     Surface& surface = *surfaces_.at(object.id);
     // Joined models of one node each would share it in Eq. 3.
     if (track.state != TrackState::kLost ||

@@ -26,5 +26,7 @@ else
   fi
 fi
 SECONDS=0
+[[ -t 1 ]] ||
+  echo "build: build/release; a first build takes 10 to 40 minutes on two cores"
 cmake --build --preset release --parallel "$(nproc)" "$@" "${quiet[@]}"
 echo "build: build/release is up to date (took $SECONDS s)"

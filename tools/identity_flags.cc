@@ -154,8 +154,11 @@ void SetFlag(const std::string& key, const std::string& value) {
       "set",           "output",         "terms_library",
       "print_options", "print_identity", "help_terms"};
   gflags::CommandLineFlagInfo flag;
-  const bool known = gflags::GetCommandLineFlagInfo(key.c_str(), &flag) &&
-                     IsRunFlag(flag) && not_set.count(key) == 0;
+  if (not_set.count(key) > 0) {
+    throw InputError("--set: key '" + key + "': expected as a flag, --" + key);
+  }
+  const bool known =
+      gflags::GetCommandLineFlagInfo(key.c_str(), &flag) && IsRunFlag(flag);
   if (!known) {
     throw InputError("--set: key '" + key +
                      "': expected a flag of sf_run, terms.NAME.KEY "

@@ -23,7 +23,7 @@ mkdir -p runs/quickstart
 step() { printf '\n== %s\n' "$*"; }
 step "sf_synth --output=$sequence"
 "$bin/sf_synth" --output="$sequence"
-step "sf_run $* --sequence=$sequence --output=$run --overwrite"
+step "sf_run${*:+ $*} --sequence=$sequence --output=$run --overwrite"
 "$bin/sf_run" "$@" --sequence="$sequence" --output="$run" --overwrite
 step "sf_evaluate --run=$run --ground_truth=$sequence/gt"
 "$bin/sf_evaluate" --run="$run" --ground_truth="$sequence/gt"

@@ -88,18 +88,45 @@ bool IsRunFlag(const gflags::CommandLineFlagInfo& flag) {
   return false;
 }
 
+namespace {
+
+/// A path that a flag names, so that it holds in every folder: `value` is one
+/// or more, separated by commas, or a word such as `auto`.
+std::string AbsolutePaths(const std::string& value) {
+  namespace fs = std::filesystem;
+  std::stringstream paths(value);
+  std::string text;
+  for (std::string path; std::getline(paths, path, ',');) {
+    std::error_code error;
+    if (!path.empty() && fs::exists(path, error)) {
+      path = fs::absolute(path).lexically_normal().string();
+    }
+    text += (text.empty() ? "" : ",") + path;
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string FlagfileText() {
   // Where a run goes and what may be replaced is not a part of what it does:
   // --flagfile=RUN/options.flags --output=NEW repeats it.
   const std::set<std::string> left_out = {
       "output", "overwrite",     "keep_same",      "resume",
       "set",    "print_options", "print_identity", "help_terms"};
+  const std::set<std::string> paths = {
+      "class_names",   "color_camera", "feature_model", "from",
+      "labels",        "masks",        "model",         "sequence",
+      "terms_library", "trajectory"};
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
   std::string text;
   for (const gflags::CommandLineFlagInfo& flag : flags) {
     if (!IsRunFlag(flag) || left_out.count(flag.name) > 0) continue;
-    text += "--" + flag.name + "=" + flag.current_value + "\n";
+    text += "--" + flag.name + "=" +
+            (paths.count(flag.name) > 0 ? AbsolutePaths(flag.current_value)
+                                        : flag.current_value) +
+            "\n";
   }
   return text;
 }

@@ -197,7 +197,9 @@ std::vector<NamedProblem> ReadProblems(const std::vector<std::string>& files,
               << deviation << ": expected at most " << kSameStart
               << " (another version?)\n";
   }
-  std::cout << problems.size() << " problems; their first costs and gradients "
+  std::cout << problems.size()
+            << (problems.size() == 1 ? " problem; its" : " problems; their")
+            << " first costs and gradients "
             << "are the run's, to " << worst << '\n';
   return problems;
 }

@@ -152,6 +152,23 @@ void TakeArguments(int argc, char** argv, std::vector<std::string>* arguments) {
   }
 }
 
+/// gflags takes the last of several in silence: an experiment would lack the
+/// settings of the others.
+///
+/// @throw InputError if --set is given more than once.
+void CheckSetGivenOnce(int argc, char** argv) {
+  int given = 0;
+  for (int i = 1; i < argc && std::strcmp(argv[i], "--") != 0; ++i) {
+    std::string flag = argv[i];
+    flag.erase(0, flag.find_first_not_of('-'));
+    if (argv[i][0] == '-') given += flag.substr(0, flag.find('=')) == "set";
+  }
+  if (given < 2) return;
+  throw InputError(
+      "--set is given " + std::to_string(given) +
+      " times: expected all settings in one, --set=\"KEY=VALUE; KEY=VALUE\"");
+}
+
 /// False if the program was only asked for help.
 bool ParseFlags(int argc, char** argv, const std::string& source,
                 const std::string& usage, std::vector<std::string>* arguments) {
@@ -160,6 +177,7 @@ bool ParseFlags(int argc, char** argv, const std::string& source,
     std::exit(code == 0 ? kExitDone : kExitBadInput);
   };
   CheckFlagfiles(argc, argv);
+  CheckSetGivenOnce(argc, argv);
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, /*remove_flags=*/true);
   if (FLAGS_help || FLAGS_helpshort) {
     PrintHelp(source, usage);

@@ -205,7 +205,9 @@ void Hdf5Writer::Close() {
 Hdf5Reader::Hdf5Reader(const std::string& path) : path_(path) {
   BeQuiet();
   if (!std::filesystem::is_regular_file(path)) {
-    throw InputError(path + ": not found; expected an HDF5 file");
+    throw InputError(path + (std::filesystem::is_directory(path)
+                                 ? ": is a folder; expected an HDF5 file"
+                                 : ": not found; expected an HDF5 file"));
   }
   file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0) Fail("expected an HDF5 file");

@@ -38,8 +38,9 @@ void CheckComplete(const FrozenProblem& problem,
     }
     if (AreEqual(without[i], with_live[i])) continue;
     throw InputError("term '" + name +
-                     "' looks at the live frame or its context: expected terms "
-                     "that do not, as they are not kept in a frozen problem");
+                     "' looks at the live frame, its context, its state or "
+                     "where its unknowns began: expected terms that do not, as "
+                     "these are not kept in a frozen problem");
   }
 }
 

@@ -29,6 +29,9 @@ using AddTerms = void (*)(TermRegistry*);
 AddTerms Open(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
+  if (!fs::exists(path, error)) {
+    Refuse(path, "no such file: expected a shared library");
+  }
   if (!fs::is_regular_file(path, error)) {
     Refuse(path, "expected a shared library");
   }

@@ -154,7 +154,7 @@ void RunFolder::Lock() {
   lock_ = DirectoryLock::TryAcquire(paths_.Lock(), &holder);
   if (lock_) return;
   throw InputError(root_ + ": is held by " + holder.ToString() +
-                   ": expected a folder of one's own");
+                   ", which works on it: expected another folder, or to wait");
 }
 
 void RunFolder::CheckHeld() const {
@@ -197,7 +197,10 @@ void RunFolder::DecideBesides(const std::optional<RunMarker>& published,
     const std::string missing =
         published ? FindMissing(*published, root_) : std::string();
     const std::string what =
-        "a run that is " + ToString(older->status) +
+        // Who marked it as running holds the folder no more.
+        "a run that is " +
+        (older->status == RunStatus::kRunning ? "unfinished"
+                                              : ToString(older->status)) +
         (changes.empty() ? "" : ", of other options (" + changes + ")") +
         (missing.empty() ? "" : ", but " + missing);
     const bool again = changes.empty() && !published;

@@ -34,11 +34,12 @@ std::vector<std::string> KindsOf(const std::string& preset) {
 TEST(Presets, NamesAreTheMethodAndItsBaselines) {
   EXPECT_EQ(PresetNames(), (std::vector<std::string>{
                                "background_only", "cofusion", "dynamicfusion",
-                               "kinectfusion", "splitfusion"}));
+                               "kinectfusion", "online", "splitfusion"}));
   PipelineOptions options;
   ExpectInputError([&] { ApplyPreset("elasticfusion", &options); },
                    "preset = elasticfusion: expected background_only, "
-                   "cofusion, dynamicfusion, kinectfusion, splitfusion");
+                   "cofusion, dynamicfusion, kinectfusion, online, "
+                   "splitfusion");
 }
 
 TEST(Presets, SplitFusionHasARigidRoomAndNonRigidThings) {
@@ -46,6 +47,22 @@ TEST(Presets, SplitFusionHasARigidRoomAndNonRigidThings) {
   ASSERT_GE(kinds.size(), 2u);
   EXPECT_EQ(kinds[0], "rigid");
   EXPECT_EQ(kinds[1], "non_rigid");
+}
+
+TEST(Presets, OnlineFollowsThingsWithoutPointsAndParts) {
+  PipelineOptions options;
+  ApplyPreset("online", &options);
+  SyntheticRun run(SyntheticRun::Quick(), options);
+  int tracked = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (const SurfaceReport& surface : run.Next().surfaces) {
+      EXPECT_EQ(surface.track_points, 0);
+      EXPECT_EQ(surface.started_parts, 0);
+      tracked += surface.id != 0 && !surface.rounds.empty() &&
+                 surface.state == TrackState::kTracked;
+    }
+  }
+  EXPECT_GE(tracked, 3);
 }
 
 TEST(Presets, CoFusionHasRigidThings) {

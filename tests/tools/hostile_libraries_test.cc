@@ -69,7 +69,7 @@ TEST_F(HostileLibraries, AreRefusedBySfRunInOneLine) {
 }
 
 TEST_F(HostileLibraries, FilesThatAreNoneAreRefused) {
-  ExpectFile(folder_ / "none.so", "expected a shared library");
+  ExpectFile(folder_ / "none.so", "no such file: expected a shared library");
   ExpectFile(folder_ / "", "expected a shared library");
   ExpectFile("/dev/zero", "expected a shared library");
   ExpectFile(folder_.Write("empty.so", ""), "cannot be loaded: ");

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "sf_run_fixture.h"
+#include "support/repository.h"
 
 namespace splitfusion {
 namespace {
@@ -259,6 +260,7 @@ TEST_F(Resume, SetChangesOneNumberAndIsResolved) {
            {"terms.arap.colour=4", "colour"},
            {"terms.arap.weight=heavy", "heavy"},
            {"nosuch=1", "nosuch"},
+           {"output=there", "expected as a flag, --output"},
            {"max_nodes=many", "many"},
            {"max_nodes", "KEY=VALUE"}}) {
     const ProgramResult result =
@@ -266,6 +268,29 @@ TEST_F(Resume, SetChangesOneNumberAndIsResolved) {
     EXPECT_EQ(result.exit_code, 2) << set;
     EXPECT_THAT(result.errors, HasSubstr(part));
   }
+}
+
+TEST_F(Resume, SettingsAreGivenOnce) {
+  const ProgramResult result = RunProgram(
+      "sf_run", Arguments("none", "--set=max_frames=1 -set max_nodes=9"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, HasSubstr("--set is given 2 times: expected all"));
+}
+
+TEST_F(Resume, OptionsRepeatTheRunFromAnotherFolder) {
+  fs::create_directory(folder_ / "elsewhere");
+  const std::string program = (ProgramFolder() / "sf_run").string();
+  const auto run_in = [&](const std::string& folder, const std::string& flags) {
+    return RunProgram("/bin/sh", "-c 'cd " + (folder_ / folder) + " && " +
+                                     program + " " + flags + "'");
+  };
+  const ProgramResult first =
+      run_in("", "--sequence=sequence --output=first --max_frames=2");
+  ASSERT_EQ(first.exit_code, 0) << first.errors;
+  const ProgramResult again = run_in(
+      "elsewhere", "--flagfile=../first/options.flags --output=../first");
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_THAT(again.output, HasSubstr("nothing to do"));
 }
 
 TEST_F(Resume, OptionsOfAClassAreAPartOfTheRun) {
