@@ -132,7 +132,7 @@ refuse("${STAGE_DIR}/older.so"
        "older.so: built with splitfusion 0.0.9 .*: expected splitfusion 0.1")
 refuse("${STAGE_DIR}/empty.so" "expected a library with SPLITFUSION_TERMS_LIB")
 refuse("${STAGE_DIR}/older.cc" "older.cc: cannot be loaded: ")
-refuse("${STAGE_DIR}/none.so" "none.so: expected a shared library")
+refuse("${STAGE_DIR}/none.so" "none.so: no such file: expected a shared library")
 refuse("${stretch}/libstretch.so,${stretch}/libstretch.so"
        "libstretch.so: term 'stretch': already registered")
 refuse("${stretch}/libstretch.so,,x.so" "expected files, separated by commas")
