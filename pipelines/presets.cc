@@ -15,10 +15,9 @@ const std::map<std::string, Change>& Presets() {
       {"splitfusion", [](PipelineOptions*) {}},
       {"online",
        [](PipelineOptions* o) {
-         o->object.tsdf.voxel_size = 0.006F;
+         o->object.tsdf.voxel_size = 0.007F;
          o->tracker.settled = 0.01;
          o->tracker.part_start.parts.count = 0;
-         o->point_tracks.spacing = 0;
        }},
       {"kinectfusion", [](PipelineOptions* o) { o->split_scene = false; }},
       {"dynamicfusion",
