@@ -90,18 +90,27 @@ bool IsRunFlag(const gflags::CommandLineFlagInfo& flag) {
 
 namespace {
 
-/// A path that a flag names, so that it holds in every folder: `value` is one
-/// or more, separated by commas, or a word such as `auto`.
-std::string AbsolutePaths(const std::string& value) {
+/// A path that a flag names, so that it holds in every folder; what is none, as
+/// `auto`, as it is.
+std::string AbsolutePath(const std::string& value) {
   namespace fs = std::filesystem;
-  std::stringstream paths(value);
+  std::error_code error;
+  const bool word = value.empty() || value == "auto" || value == "none";
+  if (word || !fs::exists(value, error)) return value;
+  return fs::absolute(value).lexically_normal().string();
+}
+
+/// The value of a flag that names paths, such ones in all folders.
+std::string WithAbsolutePaths(const gflags::CommandLineFlagInfo& flag) {
+  static const std::set<std::string> paths = {
+      "class_names", "color_camera", "feature_model", "from",      "labels",
+      "masks",       "model",        "sequence",      "trajectory"};
+  if (paths.count(flag.name) > 0) return AbsolutePath(flag.current_value);
+  if (flag.name != "terms_library") return flag.current_value;
+  std::stringstream libraries(flag.current_value);
   std::string text;
-  for (std::string path; std::getline(paths, path, ',');) {
-    std::error_code error;
-    if (!path.empty() && fs::exists(path, error)) {
-      path = fs::absolute(path).lexically_normal().string();
-    }
-    text += (text.empty() ? "" : ",") + path;
+  for (std::string path; std::getline(libraries, path, ',');) {
+    text += (text.empty() ? "" : ",") + AbsolutePath(path);
   }
   return text;
 }
@@ -114,19 +123,12 @@ std::string FlagfileText() {
   const std::set<std::string> left_out = {
       "output", "overwrite",     "keep_same",      "resume",
       "set",    "print_options", "print_identity", "help_terms"};
-  const std::set<std::string> paths = {
-      "class_names",   "color_camera", "feature_model", "from",
-      "labels",        "masks",        "model",         "sequence",
-      "terms_library", "trajectory"};
   std::vector<gflags::CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
   std::string text;
   for (const gflags::CommandLineFlagInfo& flag : flags) {
     if (!IsRunFlag(flag) || left_out.count(flag.name) > 0) continue;
-    text += "--" + flag.name + "=" +
-            (paths.count(flag.name) > 0 ? AbsolutePaths(flag.current_value)
-                                        : flag.current_value) +
-            "\n";
+    text += "--" + flag.name + "=" + WithAbsolutePaths(flag) + "\n";
   }
   return text;
 }
