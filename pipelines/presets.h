@@ -14,8 +14,8 @@ std::vector<std::string> PresetNames();
 
 /// Sets the options in which a preset differs from the method:
 ///   splitfusion      rigid background, non-rigid objects (SplitFusion)
-///   online           the same in about 3/4 of the time: coarser people, no
-///                    points matched from image to image
+///   online           the same in about 3/4 of the time: people at 7 mm
+///                    voxels, no rigid parts, rigid stages end earlier
 ///   kinectfusion     no split, one rigid surface (Newcombe et al. 2011)
 ///   dynamicfusion    no split, one non-rigid surface (Newcombe et al. 2015)
 ///   cofusion         split, every surface rigid (Runz and Agapito 2017)

@@ -21,7 +21,8 @@ PipelineOptions PipelineOptionsFromFlags(const Registries& registries);
 /// Whether a flag is one of sf_run's own, gflags' and glog's left out.
 bool IsRunFlag(const gflags::CommandLineFlagInfo& flag);
 
-/// Every flag of sf_run with its value, as a flagfile that repeats the run.
+/// Every flag of sf_run with its value, as a flagfile that repeats the run from
+/// any folder: paths of files that exist are absolute.
 std::string FlagfileText();
 
 }  // namespace splitfusion
