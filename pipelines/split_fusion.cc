@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/tracking/translation_search.h"
-#include "splitfusion/lib/visibility/exposure.h"
+#include "splitfusion/pipelines/objects_in_view.h"
 #include "splitfusion/pipelines/surface_context.h"
 
 namespace splitfusion {
@@ -24,11 +23,7 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
       options_(options),
       segmenter_(std::move(segmenter)),
       splitter_(camera, labels, options.split),
-      point_tracks_(options.point_tracks),
-      matcher_(options.match),
-      tracker_(options.tracker, options.solver,
-               SurfaceEnergies::Parse(options.terms, registries.terms),
-               registries.associations, registries.solvers),
+      tracker_(options, registries),
       standing_(options) {
   options_.Check();
   camera_.Check();
@@ -45,13 +40,12 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   report.segment_seconds = prepared.segment_seconds;
   live_ = std::move(prepared.live);
   frame_ = {frame.index, frame.timestamp, &prepared.detections, &trajectory_};
-  if (options_.tracker.part_start.parts.count > 0) matcher_.Begin(live_);
   PredictMotions(frame.world_from_camera);
   Split(prepared, &report);
+  const Stopwatch beginning;
+  tracker_.Begin(surfaces_, live_);
+  report.associate_seconds += beginning.Seconds();
   if (!surfaces_.empty()) {
-    // Surfaces are tracked at the same time: none is to add itself.
-    for (const auto& entry : surfaces_) term_states_[entry.first];
-    FollowPoints(&report);
     TrackCamera(frame.world_from_camera.has_value(), &report);
     TrackObjects(&report);
     Fuse(&report);
@@ -59,7 +53,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   }
   AddNewSurfaces(frame, &report);
   Record(frame, &report);
-  if (options_.tracker.part_start.parts.count > 0) matcher_.Keep(live_);
+  tracker_.Keep(live_);
   report.total_seconds =
       report.read_seconds + report.segment_seconds + stopwatch.Seconds();
   return report;
@@ -108,69 +102,13 @@ void SplitFusion::Split(const PreparedFrame& prepared, FrameReport* report) {
   }
 }
 
-void SplitFusion::FollowPoints(FrameReport* report) {
-  if (options_.point_tracks.spacing == 0) return;
-  const Stopwatch stopwatch;
-  std::set<int> followed;
-  for (const auto& [id, surface] : surfaces_) {
-    if (!surface->is_ray_cast()) followed.insert(id);
-  }
-  point_tracks_.Follow(live_, followed);
-  report->associate_seconds += stopwatch.Seconds();
-}
-
-bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
-                               const Rigid3d& still, bool goes_on,
-                               Surface* surface, SurfaceReport* report) {
-  Stopwatch stopwatch;
-  const int id = surface->id();
-  DeformationGraph* graph = surface->mutable_graph();
-  const bool followed =
-      options_.point_tracks.spacing > 0 && !surface->is_ray_cast();
-  std::vector<TrackedPoint> points;
-  if (followed) {
-    points = point_tracks_.Find(id, samples, surface->skinning_index(),
-                                WarpField(*graph), live_,
-                                options_.tracker.non_rigid_distance);
-  }
-  report->track_points = static_cast<int>(points.size());
-  SurfaceContext known(frame_, *surface, *surfaces_.at(0), goes_on);
-  known.SetRendered(rendering_, background_map_);
-  TermStates* states = &term_states_.at(id);
-  known.PrepareTerms(tracker_.energies(), live_, points, term_states_.at(0),
-                     states);
-  const std::vector<PointMotion> motions =
-      goes_on ? MatchPoints(*surface) : std::vector<PointMotion>();
-  report->associate_seconds += stopwatch.Restart();
-  const bool tracked =
-      tracker_.Track(samples, points, live_, static_cast<std::uint16_t>(id),
-                     still, graph, report, known.view(), motions);
-  stopwatch.Restart();
-  if (tracked) {
-    states->KeepUnknowns(tracker_.energies().Of(surface->label()),
-                         FinalUnknowns(report->rounds.back().solver));
-  }
-  if (tracked && followed) {
-    point_tracks_.Begin(id, samples, WarpField(*graph), live_);
-  }
-  report->associate_seconds += stopwatch.Seconds();
-  return tracked;
-}
-
-std::vector<PointMotion> SplitFusion::MatchPoints(
-    const Surface& surface) const {
-  std::vector<PointMotion> motions;
-  if (options_.tracker.part_start.parts.count == 0 || surface.id() == 0 ||
-      surface.graph().rigid()) {
-    return motions;
-  }
-  motions =
-      matcher_.Match(surface.id(), live_, point_tracks_.FlowOf(surface.id()));
-  const Rigid3f still =
-      (WorldFromCamera().inverse() * trajectory_.back().world_from_camera)
-          .cast<float>();
-  for (PointMotion& motion : motions) motion.from = still * motion.from;
-  return motions;
+FrameScene SplitFusion::Scene() const {
+  return {frame_,
+          live_,
+          surfaces_,
+          rendering_,
+          background_map_,
+          WorldFromCamera().inverse() * trajectory_.back().world_from_camera};
 }
 
 std::vector<ModelSample> SplitFusion::BackgroundInView(
@@ -243,11 +181,12 @@ bool SplitFusion::SetMoversApart(const std::vector<ModelSample>& samples,
 }
 
 void SplitFusion::TrackObjects(FrameReport* report) {
-  std::vector<SurfaceReport> objects = LookAtObjects();
+  std::vector<SurfaceReport> objects =
+      LookAtObjects(surfaces_, rendering_, live_, options_.render_stride);
   std::vector<char> found(objects.size(), false);
   tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
     const Surface& surface = *surfaces_.at(objects[i].id);
-    if (!IsInView(objects[i]) ||
+    if (!IsInView(objects[i], options_) ||
         StateOf(surface.id()) != TrackState::kTracked) {
       return;
     }
@@ -258,7 +197,7 @@ void SplitFusion::TrackObjects(FrameReport* report) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     SurfaceReport& object = objects[i];
     Track* track = splitter_.mutable_track(object.id);
-    if (!IsInView(object)) {
+    if (!IsInView(object, options_)) {
       object.reason = std::to_string(static_cast<int>(100 * object.exposure)) +
                       " % of the model in view";
       track->Apply(TrackEvent::kLittleInView);
@@ -274,33 +213,10 @@ void SplitFusion::TrackObjects(FrameReport* report) {
   }
 }
 
-std::vector<SurfaceReport> SplitFusion::LookAtObjects() const {
-  const std::map<int, int> pixels = PixelsOfSurfaces(live_);
-  std::vector<SurfaceReport> objects;
-  for (const auto& [id, surface] : surfaces_) {
-    if (id == 0) continue;
-    SurfaceReport object;
-    object.id = id;
-    const auto seen = pixels.find(id);
-    object.pixels = seen == pixels.end() ? 0 : seen->second;
-    const auto alone = rendering_.alone.find(id);
-    if (alone != rendering_.alone.end()) {
-      const int step = kAloneStride * options_.render_stride;
-      object.exposure = Exposure(alone->second, step, live_, id);
-    }
-    objects.push_back(std::move(object));
-  }
-  return objects;
-}
-
-bool SplitFusion::IsInView(const SurfaceReport& report) const {
-  return report.pixels >= options_.min_tracked_pixels &&
-         report.exposure >= options_.min_exposure;
-}
-
 bool SplitFusion::EndGoneTracks() {
   bool any = false;
-  for (const SurfaceReport& object : LookAtObjects()) {
+  for (const SurfaceReport& object :
+       LookAtObjects(surfaces_, rendering_, live_, options_.render_stride)) {
     Track* track = splitter_.mutable_track(object.id);
     // So few do not make a surface, by far.
     if (!track->followed() || object.exposure < options_.min_exposure ||
@@ -350,7 +266,7 @@ bool SplitFusion::TrackObject(bool goes_on, Surface* surface,
 
 bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
-  const PointTracks tracks_before = point_tracks_;
+  const PointTracks tracks_before = tracker_.point_tracks();
   // Where it was predicted a tracked one has just failed.
   const bool failed = StateOf(surface->id()) == TrackState::kTracked;
   if (!PlaceWhereSeen(surface, report) && failed) return false;
@@ -359,7 +275,7 @@ bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
     return true;
   }
   *surface->mutable_graph() = before;
-  point_tracks_ = tracks_before;
+  tracker_.set_point_tracks(tracks_before);
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
   return false;
@@ -423,9 +339,8 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     }
     track.Apply(TrackEvent::kFits);
     object.event = "reanchored";
-    point_tracks_.End(object.id);
+    tracker_.Forget(object.id);
     predictors_.erase(object.id);
-    term_states_.erase(object.id);
   }
 }
 
@@ -436,7 +351,7 @@ void SplitFusion::FollowTracks() {
     if (track.merged_into > 0) {
       surfaces_.erase(found);
       predictors_.erase(id);
-      term_states_.erase(id);
+      tracker_.Drop(id);
       continue;
     }
     found->second->set_inactive(!track.followed());

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/energy/term_state.h"
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
@@ -14,12 +13,11 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/split/surface_splitter.h"
 #include "splitfusion/lib/tracking/motion_predictor.h"
-#include "splitfusion/lib/tracking/point_tracks.h"
+#include "splitfusion/pipelines/frame_tracker.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/registries.h"
 #include "splitfusion/pipelines/standing_objects.h"
-#include "splitfusion/pipelines/surface_tracker.h"
 
 namespace splitfusion {
 
@@ -78,7 +76,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 14;  // Format.
+  static constexpr std::uint32_t kStateVersion = 15;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -94,18 +92,14 @@ class SplitFusion {
   /// `given`: known pose of the camera, see Frame.
   void PredictMotions(const std::optional<Rigid3d>& given);
   void Split(const PreparedFrame& prepared, FrameReport* report);
-  /// Follows points of all surfaces, but of a background that is ray cast, from
-  /// the frame before.
-  void FollowPoints(FrameReport* report);
-  /// Moves a surface onto its live pixels from where it is predicted; `still`
-  /// as of SurfaceTracker::Track(), `goes_on` as of SurfaceContext. Whether it
-  /// fits.
+  /// What surfaces are tracked in.
+  FrameScene Scene() const;
+  /// As FrameTracker::Track().
   bool TrackSurface(const std::vector<ModelSample>& samples,
                     const Rigid3d& still, bool goes_on, Surface* surface,
-                    SurfaceReport* report);
-  /// Points of a deforming object that were matched with the frame before, as
-  /// PartStarter takes them.
-  std::vector<PointMotion> MatchPoints(const Surface& surface) const;
+                    SurfaceReport* report) {
+    return tracker_.Track(samples, still, goes_on, Scene(), surface, report);
+  }
   /// What is in view of the background, where it is predicted.
   std::vector<ModelSample> BackgroundInView(FrameReport* report) const;
   /// Moves the background, which comes in at the predicted motion, as
@@ -121,11 +115,6 @@ class SplitFusion {
   void TrackCamera(bool given, FrameReport* report);
   /// Every object on its own and at the same time.
   void TrackObjects(FrameReport* report);
-  /// Reports of all objects: what is in view of each.
-  std::vector<SurfaceReport> LookAtObjects() const;
-  /// Whether so much of a surface is in view that its motion is not that of a
-  /// strip.
-  bool IsInView(const SurfaceReport& report) const;
   /// Ends the tracks of surfaces that nothing hides and that are not there all
   /// the same, so that they hide nothing; whether there are any.
   bool EndGoneTracks();
@@ -161,13 +150,9 @@ class SplitFusion {
   PipelineOptions options_;
   std::shared_ptr<Segmenter> segmenter_;
   SurfaceSplitter splitter_;
-  PointTracks point_tracks_;
-  FrameMatcher matcher_;
-  SurfaceTracker tracker_;
+  FrameTracker tracker_;
   SurfaceMap surfaces_;
   Trajectory trajectory_;
-  /// What the terms of a surface keep of it; of surfaces that were tracked.
-  std::map<int, TermStates> term_states_;
   FrameFacts frame_;  ///< That in hand.
   LiveView live_;
   StandingObjects standing_;

@@ -35,8 +35,8 @@ template <typename Archive>
 void SplitFusion::Serialize(Archive* archive) {
   archive->Section("split fusion");
   ExpectSameCamera(archive, camera_);
-  (*archive)(splitter_, trajectory_, live_.labels, predictors_, point_tracks_,
-             matcher_, world_from_given_, term_states_, standing_);
+  (*archive)(splitter_, trajectory_, live_.labels, predictors_, tracker_,
+             world_from_given_, standing_);
   SerializeSurfaces(archive);
 }
 

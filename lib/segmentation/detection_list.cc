@@ -15,7 +15,7 @@
 namespace splitfusion {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Json ReadJson(const std::string& path) {
   const Json json = ReadJsonOrNull<Json>(path);
