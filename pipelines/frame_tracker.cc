@@ -77,7 +77,7 @@ std::vector<PointMotion> FrameTracker::MatchPoints(
   }
   motions = matcher_.Match(surface.id(), scene.live,
                            point_tracks_.FlowOf(surface.id()));
-  const Rigid3f still = scene.camera_step.cast<float>();
+  const Rigid3f still = scene.camera_from_previous_camera.cast<float>();
   for (PointMotion& motion : motions) motion.from = still * motion.from;
   return motions;
 }

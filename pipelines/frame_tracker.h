@@ -4,11 +4,17 @@
 #include <map>
 #include <vector>
 
+#include "splitfusion/lib/association/correspondence.h"
+#include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/lib/energy/term_context.h"
 #include "splitfusion/lib/energy/term_state.h"
 #include "splitfusion/lib/frame/live_view.h"
+#include "splitfusion/lib/geometry/rigid3.h"
+#include "splitfusion/lib/model/surface.h"
+#include "splitfusion/lib/render/model_map.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
+#include "splitfusion/lib/tracking/frame_matcher.h"
 #include "splitfusion/lib/tracking/point_motion.h"
 #include "splitfusion/lib/tracking/point_tracks.h"
 #include "splitfusion/pipelines/pipeline_options.h"
@@ -17,36 +23,37 @@
 
 namespace splitfusion {
 
-/// The frame in which a surface is tracked, and the models as they are rendered
-/// in it.
+/// What surfaces are compared with in one frame; refers to all but the last.
 struct FrameScene {
-  const FrameFacts& frame;         ///< Its facts.
-  const LiveView& live;            ///< Its images, with labels.
-  const SurfaceMap& surfaces;      ///< Of the scene.
-  const MeshRendering& rendering;  ///< Surfaces drawn from their meshes.
-  const ModelMap& background;      ///< One that is ray cast; else empty.
-  /// The camera's frame from that of the frame before.
-  Rigid3d camera_step = Rigid3d::Identity();
+  const FrameFacts& frame;         ///< Index, time stamp and detections.
+  const LiveView& live;            ///< Images, with labels.
+  const SurfaceMap& surfaces;      ///< All surfaces, by id.
+  const MeshRendering& rendering;  ///< Models that are drawn from meshes.
+  const ModelMap& background;      ///< Ray cast of the background, or empty.
+  /// The camera's frame from that of the frame before, as far as it is tracked.
+  Rigid3d camera_from_previous_camera = Rigid3d::Identity();
 };
 
-/// Tracks surfaces frame by frame, with what is kept of them in between: points
-/// that are followed from image to image, matches between the two images, and
-/// what terms keep.
+/// Tracks surfaces from frame to frame. Between frames it keeps points that are
+/// followed from image to image, the last image, in which points are matched,
+/// and what terms keep. In every frame: Begin(), Track() for some surfaces,
+/// Keep().
 class FrameTracker {
  public:
   /// `registries`: what the options may name; not kept.
   ///
-  /// @throw InputError if an option is out of its range or names something
-  ///     else.
+  /// @throw InputError if an option of tracker or solver is out of its range,
+  ///     or names something else; as FrameMatcher does.
   FrameTracker(const PipelineOptions& options, const Registries& registries);
 
   /// Looks at the live frame, whose labels are known, and follows points of all
-  /// surfaces, but of a background that is ray cast, into it.
+  /// surfaces, but of a background that is ray cast, into it. Only these
+  /// surfaces may be tracked in it.
   void Begin(const SurfaceMap& surfaces, const LiveView& live);
 
   /// Moves a surface onto its live pixels from where it is predicted; `still`
-  /// as of SurfaceTracker::Track(), `goes_on` as of SurfaceContext; only where
-  /// it does, parts may start elsewhere (PartStarter). Whether it fits.
+  /// as of SurfaceTracker::Track(), `goes_on` as of SurfaceContext. Parts of a
+  /// surface that goes on may start elsewhere (PartStarter). Whether it fits.
   /// Different surfaces may be tracked at the same time.
   bool Track(const std::vector<ModelSample>& samples, const Rigid3d& still,
              bool goes_on, const FrameScene& scene, Surface* surface,
@@ -57,8 +64,9 @@ class FrameTracker {
 
   /// Forgets a surface, whose model is another one from now on.
   void Forget(int id);
-  /// Forgets a surface that is there no more.
-  void Drop(int id) { term_states_.erase(id); }
+  /// Forgets what terms keep of a surface that is there no more; its points end
+  /// with the next Begin().
+  void ForgetTerms(int id) { term_states_.erase(id); }
 
   /// Points of the surfaces; to be put back where tracking is to be undone.
   const PointTracks& point_tracks() const { return point_tracks_; }
@@ -88,7 +96,7 @@ class FrameTracker {
   PointTracks point_tracks_;
   FrameMatcher matcher_;
   SurfaceTracker tracker_;
-  /// What the terms of a surface keep of it; of surfaces that were tracked.
+  /// What the terms of a surface keep of it.
   std::map<int, TermStates> term_states_;
 };
 

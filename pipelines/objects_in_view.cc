@@ -28,7 +28,8 @@ std::vector<SurfaceReport> LookAtObjects(const SurfaceMap& surfaces,
   return objects;
 }
 
-bool IsInView(const SurfaceReport& report, const PipelineOptions& options) {
+bool IsEnoughInView(const SurfaceReport& report,
+                    const PipelineOptions& options) {
   return report.pixels >= options.min_tracked_pixels &&
          report.exposure >= options.min_exposure;
 }

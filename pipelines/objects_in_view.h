@@ -18,7 +18,8 @@ std::vector<SurfaceReport> LookAtObjects(const SurfaceMap& surfaces,
 
 /// Whether so much of a surface is in view that its motion is not that of a
 /// strip.
-bool IsInView(const SurfaceReport& report, const PipelineOptions& options);
+bool IsEnoughInView(const SurfaceReport& report,
+                    const PipelineOptions& options);
 
 }  // namespace splitfusion
 

@@ -3,12 +3,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <string>
+#include <utility>
 
-#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/tracking/point_tracks.h"
 #include "splitfusion/lib/tracking/translation_search.h"
+#include "splitfusion/pipelines/frame_tracker.h"
 #include "splitfusion/pipelines/objects_in_view.h"
 #include "splitfusion/pipelines/surface_context.h"
 
@@ -23,10 +25,16 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
       options_(options),
       segmenter_(std::move(segmenter)),
       splitter_(camera, labels, options.split),
-      tracker_(options, registries),
+      tracker_(std::make_unique<FrameTracker>(options, registries)),
       standing_(options) {
   options_.Check();
   camera_.Check();
+}
+
+SplitFusion::~SplitFusion() = default;
+
+const SurfaceEnergies& SplitFusion::energies() const {
+  return tracker_->energies();
 }
 
 FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
@@ -43,7 +51,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   PredictMotions(frame.world_from_camera);
   Split(prepared, &report);
   const Stopwatch beginning;
-  tracker_.Begin(surfaces_, live_);
+  tracker_->Begin(surfaces_, live_);
   report.associate_seconds += beginning.Seconds();
   if (!surfaces_.empty()) {
     TrackCamera(frame.world_from_camera.has_value(), &report);
@@ -53,7 +61,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   }
   AddNewSurfaces(frame, &report);
   Record(frame, &report);
-  tracker_.Keep(live_);
+  tracker_->Keep(live_);
   report.total_seconds =
       report.read_seconds + report.segment_seconds + stopwatch.Seconds();
   return report;
@@ -109,6 +117,12 @@ FrameScene SplitFusion::Scene() const {
           rendering_,
           background_map_,
           WorldFromCamera().inverse() * trajectory_.back().world_from_camera};
+}
+
+bool SplitFusion::TrackSurface(const std::vector<ModelSample>& samples,
+                               const Rigid3d& still, bool goes_on,
+                               Surface* surface, SurfaceReport* report) {
+  return tracker_->Track(samples, still, goes_on, Scene(), surface, report);
 }
 
 std::vector<ModelSample> SplitFusion::BackgroundInView(
@@ -186,7 +200,7 @@ void SplitFusion::TrackObjects(FrameReport* report) {
   std::vector<char> found(objects.size(), false);
   tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
     const Surface& surface = *surfaces_.at(objects[i].id);
-    if (!IsInView(objects[i], options_) ||
+    if (!IsEnoughInView(objects[i], options_) ||
         StateOf(surface.id()) != TrackState::kTracked) {
       return;
     }
@@ -197,7 +211,7 @@ void SplitFusion::TrackObjects(FrameReport* report) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     SurfaceReport& object = objects[i];
     Track* track = splitter_.mutable_track(object.id);
-    if (!IsInView(object, options_)) {
+    if (!IsEnoughInView(object, options_)) {
       object.reason = std::to_string(static_cast<int>(100 * object.exposure)) +
                       " % of the model in view";
       track->Apply(TrackEvent::kLittleInView);
@@ -266,7 +280,7 @@ bool SplitFusion::TrackObject(bool goes_on, Surface* surface,
 
 bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
-  const PointTracks tracks_before = tracker_.point_tracks();
+  const PointTracks tracks_before = tracker_->point_tracks();
   // Where it was predicted a tracked one has just failed.
   const bool failed = StateOf(surface->id()) == TrackState::kTracked;
   if (!PlaceWhereSeen(surface, report) && failed) return false;
@@ -275,7 +289,7 @@ bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
     return true;
   }
   *surface->mutable_graph() = before;
-  tracker_.set_point_tracks(tracks_before);
+  tracker_->set_point_tracks(tracks_before);
   rendering_ =
       RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
   return false;
@@ -339,7 +353,7 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     }
     track.Apply(TrackEvent::kFits);
     object.event = "reanchored";
-    tracker_.Forget(object.id);
+    tracker_->Forget(object.id);
     predictors_.erase(object.id);
   }
 }
@@ -351,7 +365,7 @@ void SplitFusion::FollowTracks() {
     if (track.merged_into > 0) {
       surfaces_.erase(found);
       predictors_.erase(id);
-      tracker_.Drop(id);
+      tracker_->ForgetTerms(id);
       continue;
     }
     found->second->set_inactive(!track.followed());

@@ -2,10 +2,13 @@
 #define SPLITFUSION_PIPELINES_SPLIT_FUSION_H_
 
 #include <cstdint>
+#include <map>
 #include <memory>
-#include <string>
+#include <optional>
 #include <vector>
 
+#include "splitfusion/lib/energy/surface_energies.h"
+#include "splitfusion/lib/energy/term_context.h"
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
@@ -13,13 +16,15 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/split/surface_splitter.h"
 #include "splitfusion/lib/tracking/motion_predictor.h"
-#include "splitfusion/pipelines/frame_tracker.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/registries.h"
 #include "splitfusion/pipelines/standing_objects.h"
 
 namespace splitfusion {
+
+class FrameTracker;
+struct FrameScene;
 
 /// SplitFusion: simultaneous tracking and mapping of rigid and non-rigid
 /// surfaces. Feed frames in order; read surfaces and trajectory at any time.
@@ -32,6 +37,7 @@ class SplitFusion {
   SplitFusion(const PinholeCamera& camera, const PipelineOptions& options,
               const LabelTable& labels, std::shared_ptr<Segmenter> segmenter,
               const Registries& registries = {});
+  ~SplitFusion();  ///< Where FrameTracker is known.
 
   /// One frame of the paper's overview figure: split, track every surface,
   /// fuse every surface.
@@ -71,7 +77,7 @@ class SplitFusion {
   /// Options in use.
   const PipelineOptions& options() const { return options_; }
   /// What is minimised.
-  const SurfaceEnergies& energies() const { return tracker_.energies(); }
+  const SurfaceEnergies& energies() const;
   /// Surface ids of the last frame, HxW.
   const LabelImage& labels() const { return live_.labels; }
 
@@ -97,9 +103,7 @@ class SplitFusion {
   /// As FrameTracker::Track().
   bool TrackSurface(const std::vector<ModelSample>& samples,
                     const Rigid3d& still, bool goes_on, Surface* surface,
-                    SurfaceReport* report) {
-    return tracker_.Track(samples, still, goes_on, Scene(), surface, report);
-  }
+                    SurfaceReport* report);
   /// What is in view of the background, where it is predicted.
   std::vector<ModelSample> BackgroundInView(FrameReport* report) const;
   /// Moves the background, which comes in at the predicted motion, as
@@ -150,7 +154,7 @@ class SplitFusion {
   PipelineOptions options_;
   std::shared_ptr<Segmenter> segmenter_;
   SurfaceSplitter splitter_;
-  FrameTracker tracker_;
+  std::unique_ptr<FrameTracker> tracker_;
   SurfaceMap surfaces_;
   Trajectory trajectory_;
   FrameFacts frame_;  ///< That in hand.

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/archive.h"
+#include "splitfusion/pipelines/frame_tracker.h"
 #include "splitfusion/pipelines/split_fusion.h"
 
 namespace splitfusion {
@@ -35,7 +36,7 @@ template <typename Archive>
 void SplitFusion::Serialize(Archive* archive) {
   archive->Section("split fusion");
   ExpectSameCamera(archive, camera_);
-  (*archive)(splitter_, trajectory_, live_.labels, predictors_, tracker_,
+  (*archive)(splitter_, trajectory_, live_.labels, predictors_, *tracker_,
              world_from_given_, standing_);
   SerializeSurfaces(archive);
 }

@@ -15,10 +15,10 @@
 namespace splitfusion {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using ListJson = nlohmann::json;
 
-Json ReadJson(const std::string& path) {
-  const Json json = ReadJsonOrNull<Json>(path);
+ListJson ReadJson(const std::string& path) {
+  const ListJson json = ReadJsonOrNull<ListJson>(path);
   if (!json.is_array()) {
     throw InputError(path +
                      ": no JSON list: expected [{\"index\": 1, "
@@ -28,7 +28,7 @@ Json ReadJson(const std::string& path) {
 }
 
 /// `path`: where the entry stands, for the message.
-Detection ParseDetection(const std::string& path, const Json& entry,
+Detection ParseDetection(const std::string& path, const ListJson& entry,
                          const std::string& unnamed_class) {
   Detection detection;
   try {
@@ -81,7 +81,7 @@ double Tenths(double value) { return std::round(value * 10) / 10; }
 std::vector<Detection> ReadDetections(const std::string& path,
                                       const std::string& unnamed_class) {
   std::vector<Detection> detections;
-  for (const Json& entry : ReadJson(path)) {
+  for (const ListJson& entry : ReadJson(path)) {
     detections.push_back(ParseDetection(path, entry, unnamed_class));
     CheckNewIndex(path, detections);
   }
@@ -116,7 +116,8 @@ DetectionLists ReadDetectionLists(const std::string& path,
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     const std::string place = path + ":" + std::to_string(number);
-    const Json entry = Json::parse(line, nullptr, /*allow_exceptions=*/false);
+    const ListJson entry =
+        ListJson::parse(line, nullptr, /*allow_exceptions=*/false);
     const bool has_stem = entry.is_object() && entry.contains("stem") &&
                           entry["stem"].is_string();
     if (!has_stem) {
