@@ -30,7 +30,8 @@ struct FrameScene {
   const SurfaceMap& surfaces;      ///< All surfaces, by id.
   const MeshRendering& rendering;  ///< Models that are drawn from meshes.
   const ModelMap& background;      ///< Ray cast of the background, or empty.
-  /// The camera's frame from that of the frame before, as far as it is tracked.
+  /// The camera's frame from that of the frame before, metres, as far as the
+  /// background has been tracked.
   Rigid3d camera_from_previous_camera = Rigid3d::Identity();
 };
 
@@ -51,10 +52,15 @@ class FrameTracker {
   /// surfaces may be tracked in it.
   void Begin(const SurfaceMap& surfaces, const LiveView& live);
 
-  /// Moves a surface onto its live pixels from where it is predicted; `still`
-  /// as of SurfaceTracker::Track(), `goes_on` as of SurfaceContext. Parts of a
-  /// surface that goes on may start elsewhere (PartStarter). Whether it fits.
-  /// Different surfaces may be tracked at the same time.
+  /// Moves a surface onto its live pixels from where it is predicted, and
+  /// returns whether it fits; else `report` says why not. `samples`: what is in
+  /// view of it; `still` as of SurfaceTracker::Track(), a rigid motion of the
+  /// camera frame, metres; `goes_on` as of SurfaceContext: then its parts may
+  /// start elsewhere (PartStarter). Different surfaces may be tracked at the
+  /// same time.
+  ///
+  /// @throw InputError or std::runtime_error if a term throws, see
+  ///     TermStates::Prepare().
   bool Track(const std::vector<ModelSample>& samples, const Rigid3d& still,
              bool goes_on, const FrameScene& scene, Surface* surface,
              SurfaceReport* report);

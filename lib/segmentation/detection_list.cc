@@ -15,10 +15,11 @@
 namespace splitfusion {
 namespace {
 
-using ListJson = nlohmann::json;
+// Others keep the order of keys, under the name Json.
+using PlainJson = nlohmann::json;
 
-ListJson ReadJson(const std::string& path) {
-  const ListJson json = ReadJsonOrNull<ListJson>(path);
+PlainJson ReadJson(const std::string& path) {
+  const PlainJson json = ReadJsonOrNull<PlainJson>(path);
   if (!json.is_array()) {
     throw InputError(path +
                      ": no JSON list: expected [{\"index\": 1, "
@@ -28,7 +29,7 @@ ListJson ReadJson(const std::string& path) {
 }
 
 /// `path`: where the entry stands, for the message.
-Detection ParseDetection(const std::string& path, const ListJson& entry,
+Detection ParseDetection(const std::string& path, const PlainJson& entry,
                          const std::string& unnamed_class) {
   Detection detection;
   try {
@@ -81,7 +82,7 @@ double Tenths(double value) { return std::round(value * 10) / 10; }
 std::vector<Detection> ReadDetections(const std::string& path,
                                       const std::string& unnamed_class) {
   std::vector<Detection> detections;
-  for (const ListJson& entry : ReadJson(path)) {
+  for (const PlainJson& entry : ReadJson(path)) {
     detections.push_back(ParseDetection(path, entry, unnamed_class));
     CheckNewIndex(path, detections);
   }
@@ -116,8 +117,8 @@ DetectionLists ReadDetectionLists(const std::string& path,
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     const std::string place = path + ":" + std::to_string(number);
-    const ListJson entry =
-        ListJson::parse(line, nullptr, /*allow_exceptions=*/false);
+    const PlainJson entry =
+        PlainJson::parse(line, nullptr, /*allow_exceptions=*/false);
     const bool has_stem = entry.is_object() && entry.contains("stem") &&
                           entry["stem"].is_string();
     if (!has_stem) {
