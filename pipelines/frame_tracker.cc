@@ -15,6 +15,7 @@ FrameTracker::FrameTracker(const PipelineOptions& options,
       non_rigid_distance_(options.tracker.non_rigid_distance),
       point_tracks_(options.point_tracks),
       matcher_(options.match),
+      match_ratio_(options.match.ratio),
       tracker_(options.tracker, options.solver,
                SurfaceEnergies::Parse(options.terms, registries.terms),
                registries.associations, registries.solvers) {}
@@ -86,9 +87,24 @@ void FrameTracker::Keep(const LiveView& live) {
   if (starts_parts_) matcher_.Keep(live);
 }
 
+void FrameTracker::KeepSight(const Surface& surface, const LiveView& live) {
+  sights_.Keep(surface.id(), live, MeanRigidMotion(surface.graph()));
+}
+
+std::optional<Rigid3d> FrameTracker::MotionSinceSight(
+    const Surface& surface, const LiveView& live) const {
+  return sights_.FindMotion(surface.id(), live,
+                            MeanRigidMotion(surface.graph()), match_ratio_);
+}
+
 void FrameTracker::Forget(int id) {
   point_tracks_.End(id);
+  ForgetGone(id);
+}
+
+void FrameTracker::ForgetGone(int id) {
   term_states_.erase(id);
+  sights_.Forget(id);
 }
 
 }  // namespace splitfusion

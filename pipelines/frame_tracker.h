@@ -2,6 +2,7 @@
 #define SPLITFUSION_PIPELINES_FRAME_TRACKER_H_
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "splitfusion/lib/association/correspondence.h"
@@ -15,6 +16,7 @@
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
 #include "splitfusion/lib/tracking/frame_matcher.h"
+#include "splitfusion/lib/tracking/last_sights.h"
 #include "splitfusion/lib/tracking/point_motion.h"
 #include "splitfusion/lib/tracking/point_tracks.h"
 #include "splitfusion/pipelines/pipeline_options.h"
@@ -65,14 +67,21 @@ class FrameTracker {
              bool goes_on, const FrameScene& scene, Surface* surface,
              SurfaceReport* report);
 
+  /// A surface that was tracked is in plain view, so that it will be known
+  /// again by how it looks now.
+  void KeepSight(const Surface& surface, const LiveView& live);
+  /// As LastSights::FindMotion() of a surface where it is predicted.
+  std::optional<Rigid3d> MotionSinceSight(const Surface& surface,
+                                          const LiveView& live) const;
+
   /// Ends a frame: keeps what the next one is compared with.
   void Keep(const LiveView& live);
 
   /// Forgets a surface, whose model is another one from now on.
   void Forget(int id);
-  /// Forgets what terms keep of a surface that is there no more; its points end
+  /// Forgets what is kept of a surface that is there no more; its points end
   /// with the next Begin().
-  void ForgetTerms(int id) { term_states_.erase(id); }
+  void ForgetGone(int id);
 
   /// Points of the surfaces; to be put back where tracking is to be undone.
   const PointTracks& point_tracks() const { return point_tracks_; }
@@ -85,7 +94,7 @@ class FrameTracker {
   /// Saves or restores it between two frames, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(point_tracks_, matcher_, term_states_);
+    (*archive)(point_tracks_, matcher_, sights_, term_states_);
   }
 
  private:
@@ -101,6 +110,8 @@ class FrameTracker {
   double non_rigid_distance_;
   PointTracks point_tracks_;
   FrameMatcher matcher_;
+  LastSights sights_;
+  double match_ratio_;
   SurfaceTracker tracker_;
   /// What the terms of a surface keep of it.
   std::map<int, TermStates> term_states_;

@@ -70,6 +70,7 @@ void PipelineOptions::List(OptionList* list) {
                "feature_model",
                "an empty one, or --match_features and --parts above 0");
   list->Part("", &solver);
+  list->Part("", &hidden);
   list->Part("", &split);
   list->Part("ray_", &ray_cast);
 }

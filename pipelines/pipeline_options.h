@@ -4,6 +4,7 @@
 #include <string>
 
 #include "splitfusion/lib/energy/solver.h"
+#include "splitfusion/lib/model/hidden_motions.h"
 #include "splitfusion/lib/model/surface.h"
 #include "splitfusion/lib/render/ray_caster.h"
 #include "splitfusion/lib/split/split_options.h"
@@ -34,6 +35,8 @@ struct PipelineOptions {
   MatchOptions match;
   /// Minimiser.
   SolverOptions solver;
+  /// Motions of what was hidden, once all frames are known.
+  HiddenMotionOptions hidden;
   /// Ray casting of the background.
   RayCastOptions ray_cast;
   /// The energy of what deforms, and of what may have come from far away;

@@ -18,6 +18,7 @@ const std::map<std::string, Change>& Presets() {
          o->object.tsdf.voxel_size = 0.007F;
          o->tracker.settled = 0.01;
          o->tracker.part_start.parts.count = 0;
+         o->hidden.refine = false;
        }},
       {"kinectfusion", [](PipelineOptions* o) { o->split_scene = false; }},
       {"dynamicfusion",

@@ -11,11 +11,14 @@
 #include "splitfusion/lib/base/any_of.h"
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/archive_file.h"
+#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/median.h"
 #include "splitfusion/lib/calibration/color_camera_estimate.h"
+#include "splitfusion/lib/model/hidden_motions.h"
 #include "splitfusion/lib/model/surface_uncertainty.h"
 #include "splitfusion/lib/report/frame_pictures.h"
+#include "splitfusion/lib/report/refinement_report.h"
 
 namespace splitfusion {
 namespace {
@@ -316,21 +319,38 @@ void SequenceRun::WriteEnd() {
 
 void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
   folder_.CheckHeld();
-  const Stopwatch writing;
-  work_->fusion.Finish();
-  for (const auto& [id, surface] : work_->fusion.surfaces()) {
-    const StretchedArea stretch =
-        WriteSurface(directory_->paths(), *surface, options_.warped);
-    directory_->SetWritten(
-        id, {surface->graph().size(),
-             static_cast<int>(surface->mesh().vertices.size()), stretch});
-  }
-  directory_->AddWritingSeconds(writing.Seconds());
+  WriteSurfaces();
   directory_->Finish({status, error, folder_.marker().resumed_at,
                       SkippedFrames(work_->reader)});
   WarnOfSkippedFrames();
   const bool published = folder_.Publish(status, error);
   where_ = published ? folder_.root() : folder_.unfinished().root();
+}
+
+void SequenceRun::WriteSurfaces() {
+  Stopwatch stopwatch;
+  SplitFusion& fusion = work_->fusion;
+  fusion.Finish();
+  directory_->AddWritingSeconds(stopwatch.Restart());
+  const std::map<int, Rigid3d> poses = fusion.PosesByFrame();
+  const HiddenMotionOptions& hidden = fusion.options().hidden;
+  std::string refined;
+  for (const auto& [id, surface] : fusion.surfaces()) {
+    SurfaceModel model = surface->Model();
+    if (hidden.refine && !surface->is_ray_cast()) {
+      refined += RefinementLines(id, RefineHiddenMotions(poses, hidden, &model));
+    }
+    directory_->AddRefiningSeconds(stopwatch.Restart());
+    const StretchedArea stretch =
+        WriteSurface(directory_->paths(), *surface, model, options_.warped);
+    directory_->SetWritten(
+        id, {surface->graph().size(),
+             static_cast<int>(surface->mesh().vertices.size()), stretch});
+    directory_->AddWritingSeconds(stopwatch.Restart());
+  }
+  if (!hidden.refine) return;
+  WriteFileAtomically(directory_->paths().Refinement(),
+                      [&](std::ostream& out) { out << refined; });
 }
 
 /// Of a run that an error ended; a second error, as on a full disk, leaves

@@ -133,6 +133,8 @@ class SequenceRun {
   void CheckReconstructed() const;
   void WriteEnd();
   void WriteResults(RunStatus status, const std::string& error = "");
+  /// All surfaces, with motions that are refined by what came later.
+  void WriteSurfaces();
   void WriteFailure(const std::string& error);
 
   std::string ExpectedDepth() const;

@@ -61,6 +61,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   }
   AddNewSurfaces(frame, &report);
   Record(frame, &report);
+  KeepSights(report);
   tracker_->Keep(live_);
   report.total_seconds =
       report.read_seconds + report.segment_seconds + stopwatch.Seconds();
@@ -247,22 +248,23 @@ TrackState SplitFusion::StateOf(int id) const {
   return id == 0 ? background_state_ : splitter_.tracks().at(id).state;
 }
 
-bool SplitFusion::PlaceWhereSeen(Surface* surface, SurfaceReport* report) {
+std::vector<Rigid3d> SplitFusion::WaysToWhereSeen(
+    const Surface& surface, SurfaceReport* report) const {
   const Stopwatch stopwatch;
-  const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
+  std::vector<Rigid3d> ways;
+  const auto add = [&](const std::optional<Rigid3d>& way) {
+    if (way) ways.push_back(*way);
+  };
+  add(tracker_->MotionSinceSight(surface, live_));
   const double deviation = options_.split.assignment.PlaceDeviation(
-      predictors_.at(surface->id()).frames_since() + 1);
-  const std::optional<Rigid3d> shift =
-      FindTranslation(VisibleSamples(RenderAlone(*surface, camera), *surface,
+      predictors_.at(surface.id()).frames_since() + 1);
+  const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
+  add(FindTranslation(VisibleSamples(RenderAlone(surface, camera), surface,
                                      options_.render_stride),
-                      WarpField(surface->graph()), live_,
-                      static_cast<std::uint16_t>(surface->id()), deviation);
-  if (shift) {
-    ApplyRigidMotion(*shift, surface->mutable_graph());
-    rendering_ = RenderMeshes(surfaces_, camera);
-  }
+                      WarpField(surface.graph()), live_,
+                      static_cast<std::uint16_t>(surface.id()), deviation));
   report->render_seconds += stopwatch.Seconds();
-  return shift.has_value();
+  return ways;
 }
 
 bool SplitFusion::TrackObject(bool goes_on, Surface* surface,
@@ -281,17 +283,22 @@ bool SplitFusion::TrackObject(bool goes_on, Surface* surface,
 bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
   const PointTracks tracks_before = tracker_->point_tracks();
+  std::vector<Rigid3d> ways = WaysToWhereSeen(*surface, report);
   // Where it was predicted a tracked one has just failed.
   const bool failed = StateOf(surface->id()) == TrackState::kTracked;
-  if (!PlaceWhereSeen(surface, report) && failed) return false;
-  if (TrackObject(/*goes_on=*/false, surface, report) &&
-      ExplainsItsPixels(report)) {
-    return true;
+  if (ways.empty() && !failed) ways.push_back(Rigid3d::Identity());
+  const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
+  for (const Rigid3d& way : ways) {
+    ApplyRigidMotion(way, surface->mutable_graph());
+    rendering_ = RenderMeshes(surfaces_, camera);
+    if (TrackObject(/*goes_on=*/false, surface, report) &&
+        ExplainsItsPixels(report)) {
+      return true;
+    }
+    *surface->mutable_graph() = before;
+    tracker_->set_point_tracks(tracks_before);
   }
-  *surface->mutable_graph() = before;
-  tracker_->set_point_tracks(tracks_before);
-  rendering_ =
-      RenderMeshes(surfaces_, camera_.Subsampled(options_.render_stride));
+  if (!ways.empty()) rendering_ = RenderMeshes(surfaces_, camera);
   return false;
 }
 
@@ -334,6 +341,15 @@ bool SplitFusion::InPlainView(const SurfaceReport& report) const {
   return report.pixels >= least;
 }
 
+void SplitFusion::KeepSights(const FrameReport& report) {
+  for (const SurfaceReport& object : report.surfaces) {
+    if (object.id != 0 && object.state == TrackState::kTracked &&
+        InPlainView(object)) {
+      tracker_->KeepSight(*surfaces_.at(object.id), live_);
+    }
+  }
+}
+
 void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
   for (SurfaceReport& object : report->surfaces) {
     if (object.id == 0) continue;
@@ -365,7 +381,7 @@ void SplitFusion::FollowTracks() {
     if (track.merged_into > 0) {
       surfaces_.erase(found);
       predictors_.erase(id);
-      tracker_->ForgetTerms(id);
+      tracker_->ForgetGone(id);
       continue;
     }
     found->second->set_inactive(!track.followed());
@@ -432,8 +448,10 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
     surface_report.node_spacing = surface.graph().node_spacing;
     surface_report.vertices = static_cast<int>(surface.mesh().vertices.size());
     surface_report.state = StateOf(id);
-    surface.RecordMotions(frame.index,
-                          surface_report.state == TrackState::kTracked);
+    const bool tracked = surface_report.state == TrackState::kTracked;
+    surface.RecordMotions(
+        frame.index, tracked,
+        tracked ? surface.SeenNodes(live_) : std::vector<char>());
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
     predictors_[id].Record(placed, Center(surface.graph()), StateOf(id));
@@ -443,6 +461,18 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
     report->fuse_seconds += surface_report.fuse_seconds;
     report->mesh_seconds += surface_report.mesh_seconds;
   }
+}
+
+std::map<int, Rigid3d> SplitFusion::PosesByFrame() const {
+  std::map<int, Rigid3d> poses;
+  const auto background = surfaces_.find(0);
+  if (background == surfaces_.end()) return poses;
+  DeformationGraph graph = background->second->graph();
+  for (const FrameMotions& frame : background->second->history().frames) {
+    graph.motions = frame.motions;
+    poses[frame.frame] = MeanRigidMotion(graph).inverse();
+  }
+  return poses;
 }
 
 void SplitFusion::Finish() {

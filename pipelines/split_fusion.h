@@ -63,6 +63,8 @@ class SplitFusion {
   const SurfaceMap& surfaces() const { return surfaces_; }
   /// Camera poses so far; the world is the first camera.
   const Trajectory& trajectory() const { return trajectory_; }
+  /// The same by frame index, since there is a background: world from camera.
+  std::map<int, Rigid3d> PosesByFrame() const;
   /// Intrinsics.
   const PinholeCamera& camera() const { return camera_; }
   /// The colour images of all frames are from this camera, not registered to
@@ -82,7 +84,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 15;  // Format.
+  static constexpr std::uint32_t kStateVersion = 17;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -123,9 +125,11 @@ class SplitFusion {
   /// the same, so that they hide nothing; whether there are any.
   bool EndGoneTracks();
   TrackState StateOf(int id) const;
-  /// Shifts a surface to where its live pixels are; whether such a place is
-  /// found.
-  bool PlaceWhereSeen(Surface* surface, SurfaceReport* report);
+  /// Motions of the camera frame that may take a surface to where its live
+  /// pixels are, the likeliest first: what it looked like tells, or what shape
+  /// it has.
+  std::vector<Rigid3d> WaysToWhereSeen(const Surface& surface,
+                                       SurfaceReport* report) const;
   /// `goes_on`: as of SurfaceContext.
   bool TrackObject(bool goes_on, Surface* surface, SurfaceReport* report);
   /// Tracks a surface that is lost or was occluded from where its live pixels
@@ -137,6 +141,8 @@ class SplitFusion {
   void Fuse(FrameReport* report);
   /// Tells surfaces what became of their tracks.
   void FollowTracks();
+  /// What objects in plain view look like.
+  void KeepSights(const FrameReport& report);
   /// Whether the live pixels of a surface show about as much of it as usual.
   bool InPlainView(const SurfaceReport& report) const;
   void ReanchorLostSurfaces(FrameReport* report);

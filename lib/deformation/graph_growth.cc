@@ -287,7 +287,9 @@ NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
   if (history != nullptr) {
     for (FrameMotions& frame : history->frames) {
       BlendNewMotions(places, &carriers, &frame.motions);
+      frame.seen.resize(frame.motions.size(), false);
       change.Apply(&frame.motions);
+      change.Apply(&frame.seen);
     }
   }
   ReplaceNodes(canonical_mesh, options, skinning.supports(), added, change,

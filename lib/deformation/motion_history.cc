@@ -19,9 +19,7 @@ namespace splitfusion {
 namespace {
 
 /// Eight bytes at the beginning; the last two are the version.
-constexpr char kMagic[] = "SFMOTN02";
-/// Version without a checksum at the end.
-constexpr char kFirstMagic[] = "SFMOTN01";
+constexpr char kMagic[] = "SFMOTN03";
 constexpr std::size_t kMagicBytes = 8;  // Format.
 /// R row by row, then t.
 using StoredMotion = std::array<float, 12>;
@@ -47,6 +45,29 @@ NodeMotion Restore(const StoredMotion& stored) {
     motion.translation[row] = stored[9 + row];
   }
   return motion;
+}
+
+/// What a version of the file has.
+struct Version {
+  const char* magic;
+  bool has_seen;      // Which nodes were.
+  bool has_checksum;  // At the end.
+
+  std::uintmax_t BytesOfFrame(std::uintmax_t nodes) const {
+    return 8 + nodes * (sizeof(StoredMotion) + (has_seen ? 1 : 0));
+  }
+};
+
+constexpr std::array<Version, 3> kVersions = {{{kMagic, true, true},
+                                               {"SFMOTN02", false, true},
+                                               {"SFMOTN01", false, false}}};
+
+/// That of a file that begins with `head`; null: of none.
+const Version* VersionOf(const std::string& head) {
+  for (const Version& version : kVersions) {
+    if (head.compare(0, kMagicBytes, version.magic) == 0) return &version;
+  }
+  return nullptr;
 }
 
 template <typename T>
@@ -85,6 +106,9 @@ std::string BytesOf(const MotionHistory& history) {
     for (const NodeMotion& motion : frame.motions) {
       Append(Store(motion), &bytes);
     }
+    for (std::size_t i = 0; i < nodes; ++i) {
+      Append(static_cast<char>(frame.Saw(static_cast<int>(i))), &bytes);
+    }
   }
   Append(Checksum64(bytes.data(), bytes.size()), &bytes);
   return bytes;
@@ -98,17 +122,17 @@ std::string ReadMotionBytes(const std::string& path) {
   if (!stream) throw InputError(path + ": cannot be opened");
   std::string head(kMagicBytes + 8, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  const bool is_first = head.compare(0, kMagicBytes, kFirstMagic) == 0;
-  if (!is_first && head.compare(0, kMagicBytes, kMagic) != 0) {
+  const Version* version = VersionOf(head);
+  if (version == nullptr) {
     throw InputError(path + ": expected a file that begins with '" + kMagic +
-                     "' or '" + kFirstMagic + "'");
+                     "' or an older version of it");
   }
   ByteReader reader(head, kMagicBytes);
   const auto frames = reader.Read<std::uint32_t>();
   const auto nodes = reader.Read<std::uint32_t>();
   const std::uintmax_t expected =
-      head.size() + std::uintmax_t{frames} * (8 + std::uintmax_t{nodes} * 48) +
-      (is_first ? 0 : sizeof(std::uint64_t));
+      head.size() + frames * version->BytesOfFrame(nodes) +
+      (version->has_checksum ? sizeof(std::uint64_t) : 0);
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size != expected) {
@@ -127,7 +151,7 @@ std::string ReadMotionBytes(const std::string& path) {
 /// @throw InputError unless the last eight bytes are the checksum of all before
 ///     them, or there is none.
 void CheckSum(const std::string& path, const std::string& bytes) {
-  if (bytes.compare(0, kMagicBytes, kFirstMagic) == 0) return;
+  if (!VersionOf(bytes)->has_checksum) return;
   const std::size_t end = bytes.size() - sizeof(std::uint64_t);
   if (ByteReader(bytes, end).Read<std::uint64_t>() ==
       Checksum64(bytes.data(), end)) {
@@ -161,13 +185,17 @@ void CheckFrame(const std::string& path, const FrameMotions& frame,
   }
 }
 
-FrameMotions ReadFrame(std::uint32_t nodes, ByteReader* reader) {
+FrameMotions ReadFrame(std::uint32_t nodes, bool has_seen,
+                       ByteReader* reader) {
   FrameMotions frame;
   frame.frame = reader->Read<std::int32_t>();
   frame.tracked = reader->Read<std::int32_t>() != 0;
   frame.motions.reserve(nodes);
   for (std::uint32_t i = 0; i < nodes; ++i) {
     frame.motions.push_back(Restore(reader->Read<StoredMotion>()));
+  }
+  for (std::uint32_t i = 0; has_seen && i < nodes; ++i) {
+    frame.seen.push_back(reader->Read<char>());
   }
   return frame;
 }
@@ -194,7 +222,8 @@ MotionHistory ReadMotions(const std::string& path) {
   const auto nodes = reader.Read<std::uint32_t>();
   MotionHistory history;
   for (std::uint32_t i = 0; i < frames; ++i) {
-    FrameMotions frame = ReadFrame(nodes, &reader);
+    FrameMotions frame =
+        ReadFrame(nodes, VersionOf(bytes)->has_seen, &reader);
     CheckFrame(path, frame, history);
     history.frames.push_back(std::move(frame));
   }

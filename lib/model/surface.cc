@@ -256,8 +256,22 @@ void Surface::UpdateGraphOverMesh(bool retie) {
   mesh_skinning_.FollowGraph(*index_, mesh_.vertices, skinning_change);
 }
 
-void Surface::RecordMotions(int frame, bool tracked) {
-  history_.frames.push_back({frame, tracked, graph_.motions});
+std::vector<char> Surface::SeenNodes(const LiveView& live) const {
+  std::vector<char> seen(graph_.size(), true);
+  if (kind_ == SurfaceKind::kRigid) return seen;
+  const DepthTolerance<float> tolerance{
+      static_cast<float>(options_.tsdf.truncation)};
+  for (int i = 0; i < graph_.size(); ++i) {
+    const Eigen::Vector3d place =
+        graph_.positions[i] + graph_.motions[i].translation;
+    seen[i] = LookAt(live, id_, place.cast<float>(), tolerance) ==
+              DepthState::kObserved;
+  }
+  return seen;
+}
+
+void Surface::RecordMotions(int frame, bool tracked, std::vector<char> seen) {
+  history_.frames.push_back({frame, tracked, graph_.motions, std::move(seen)});
   graph_.first_seen.resize(graph_.size(), frame);
 }
 

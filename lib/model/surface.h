@@ -93,9 +93,15 @@ class Surface {
   /// Extracts the final canonical mesh, without small pieces.
   void FinishMesh();
 
-  /// Appends the current motions to the history. Nodes that are new are seen
-  /// from this frame on.
-  void RecordMotions(int frame, bool tracked);
+  /// Of every node whether it is in view where the current motions, which were
+  /// just tracked, have it: a live pixel of the surface lies within the
+  /// truncation, beside the noise. All of a rigid surface are.
+  std::vector<char> SeenNodes(const LiveView& live) const;
+
+  /// Appends the current motions to the history, and which nodes were seen
+  /// (FrameMotions::seen). New nodes count in DeformationGraph::first_seen from
+  /// this frame on.
+  void RecordMotions(int frame, bool tracked, std::vector<char> seen = {});
 
   /// Mesh vertices under the current motions, camera frame.
   std::vector<Eigen::Vector3f> WarpedVertices() const;

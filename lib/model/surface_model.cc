@@ -205,7 +205,8 @@ SurfaceModel PartOf(const TriangleMesh& mesh,
   for (const FrameMotions& frame : history.frames) {
     if (frame.frame < first) continue;
     part.history.frames.push_back(
-        {frame.frame, frame.tracked, Chosen(frame.motions, members.nodes)});
+        {frame.frame, frame.tracked, Chosen(frame.motions, members.nodes),
+         Chosen(frame.seen, members.nodes)});
   }
   return part;
 }
@@ -224,10 +225,15 @@ SurfaceModel JoinModels(const std::vector<const SurfaceModel*>& models) {
   }
   joined.graph.parts.back().end_frame = ModelPart::kNoEnd;
   for (const auto& [index, tracked] : FramesOf(models)) {
-    FrameMotions all{index, tracked, {}};
+    FrameMotions all{index, tracked, {}, {}};
     for (std::size_t i = 0; i < models.size(); ++i) {
       const auto motions = MotionsAt(*models[i], index, shifts[i]);
       all.motions.insert(all.motions.end(), motions.begin(), motions.end());
+      const FrameMotions* own = models[i]->history.Find(index);
+      if (own != nullptr) {
+        all.seen.insert(all.seen.end(), own->seen.begin(), own->seen.end());
+      }
+      all.seen.resize(all.motions.size(), false);
     }
     joined.history.frames.push_back(std::move(all));
   }

@@ -67,6 +67,9 @@ class RunDirectory {
   /// `seconds_writing`.
   void AddWritingSeconds(double seconds) { seconds_writing_ += seconds; }
 
+  /// As `seconds_writing`, for `seconds_refining`.
+  void AddRefiningSeconds(double seconds) { seconds_refining_ += seconds; }
+
   /// States what was written of a surface at the end.
   void SetWritten(int id, const WrittenSurface& written) {
     builder_.SetWritten(id, written);
@@ -90,6 +93,7 @@ class RunDirectory {
   RunFacts facts_;
   SummaryBuilder builder_;
   double seconds_writing_ = 0;
+  double seconds_refining_ = 0;
   double cpu_seconds_before_ = 0;
   std::ofstream frames_;
   std::ofstream iterations_;

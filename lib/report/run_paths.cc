@@ -31,6 +31,7 @@ std::string RunPaths::ColorCamera() const { return Below("color_camera.txt"); }
 std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }
 std::string RunPaths::Frames() const { return Below("frames.jsonl"); }
 std::string RunPaths::Iterations() const { return Below("iterations.csv"); }
+std::string RunPaths::Refinement() const { return Below("refinement.jsonl"); }
 std::string RunPaths::Summary() const { return Below("summary.json"); }
 std::string RunPaths::Evaluation() const { return Below("evaluation.json"); }
 std::string RunPaths::HtmlReport() const { return Below("report.html"); }
@@ -66,14 +67,14 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
 
 bool RunPaths::IsOfRun(const std::string& name) {
   const RunPaths here("");
-  const std::array<std::string, 19> names = {
+  const std::array<std::string, 20> names = {
       here.Marker(),     here.Checkpoint(),  "checkpoints",
       here.Options(),    here.Calibration(), here.Trajectory(),
       here.Frames(),     here.Iterations(),  here.Summary(),
       here.Evaluation(), here.HtmlReport(),  here.Pictures(),
       here.Detections(), "solver",           "masks",
       "surfaces",        "problems",         "uncertainty",
-      here.ColorCamera()};
+      here.ColorCamera(), here.Refinement()};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 

@@ -28,6 +28,7 @@ class RunPaths {
   std::string Trajectory() const;   ///< RUN/trajectory.txt
   std::string Frames() const;       ///< RUN/frames.jsonl
   std::string Iterations() const;   ///< RUN/iterations.csv
+  std::string Refinement() const;   ///< RUN/refinement.jsonl
   std::string Summary() const;      ///< RUN/summary.json
   std::string Evaluation() const;   ///< RUN/evaluation.json
   std::string HtmlReport() const;   ///< RUN/report.html

@@ -75,6 +75,13 @@ Json SecondsPerFrame(const RunSummary& summary) {
           {"parts", parts}};
 }
 
+/// Wall time of everything by frame.
+double SecondsOfAllPasses(const RunSummary& summary) {
+  return summary.mean_seconds +
+         (summary.seconds_refining + summary.seconds_writing) /
+             std::max(1, summary.frames);
+}
+
 }  // namespace
 
 std::string VerdictLine(const RunSummary& summary) {
@@ -117,6 +124,8 @@ Json ToJson(const RunSummary& summary) {
           {"refound_frames", summary.refound_frames},
           {"seconds_per_frame", SecondsPerFrame(summary)},
           {"seconds_writing", summary.seconds_writing},
+          {"seconds_refining", summary.seconds_refining},
+          {"seconds_per_frame_all_passes", SecondsOfAllPasses(summary)},
           {"cpu_seconds_per_frame", summary.cpu_seconds_per_frame},
           {"peak_memory_bytes", summary.peak_memory_bytes},
           {"surfaces", surfaces},

@@ -29,20 +29,12 @@ TriangleMesh WarpMesh(const SurfaceModel& model,
 
 }  // namespace
 
-StretchedArea WriteSurface(const RunPaths& paths, const Surface& surface,
-                           const WarpedOutput& warped) {
-  const std::string folder = paths.Surface(surface.id(), surface.label());
-  std::error_code ignored;  // Files that cannot be written say so.
-  std::filesystem::create_directory(std::filesystem::path(folder).parent_path(),
-                                    ignored);
-  const SurfaceModel model = surface.Model();
-  WritePly(folder + "/mesh.ply", model.mesh);
-  surface.volume().Write(folder + "/tsdf.vdb");
-  const int neighbors = surface.graph_options().neighbors_per_point;
-  WriteGraph(folder + "/graph.json", model.graph, neighbors);
-  WriteMotions(folder + "/motions.bin", model.history);
+StretchedArea WriteWarpedMeshes(const RunPaths& paths, int id,
+                                const std::string& label,
+                                const SurfaceModel& model, int neighbors,
+                                const WarpedOutput& warped) {
   StretchedArea cut;
-  if (surface.is_ray_cast() || warped.every <= 0) return cut;
+  if (warped.every <= 0) return cut;
   const double stretched_from = StretchedFrom(model.mesh);
   const std::vector<Skinning> skinning =
       SkinningIndex(model.graph, neighbors).Skin(model.mesh.vertices);
@@ -50,10 +42,26 @@ StretchedArea WriteSurface(const RunPaths& paths, const Surface& surface,
     if (motions.frame % warped.every != 0) continue;
     TriangleMesh mesh = WarpMesh(model, skinning, motions, warped.whole);
     cut += CutStretched(stretched_from, &mesh);
-    WritePly(paths.WarpedMesh(surface.id(), surface.label(), motions.frame),
-             mesh);
+    WritePly(paths.WarpedMesh(id, label, motions.frame), mesh);
   }
   return cut;
+}
+
+StretchedArea WriteSurface(const RunPaths& paths, const Surface& surface,
+                           const SurfaceModel& model,
+                           const WarpedOutput& warped) {
+  const std::string folder = paths.Surface(surface.id(), surface.label());
+  std::error_code ignored;  // Files that cannot be written say so.
+  std::filesystem::create_directory(std::filesystem::path(folder).parent_path(),
+                                    ignored);
+  WritePly(folder + "/mesh.ply", model.mesh);
+  surface.volume().Write(folder + "/tsdf.vdb");
+  const int neighbors = surface.graph_options().neighbors_per_point;
+  WriteGraph(folder + "/graph.json", model.graph, neighbors);
+  WriteMotions(folder + "/motions.bin", model.history);
+  if (surface.is_ray_cast()) return {};
+  return WriteWarpedMeshes(paths, surface.id(), surface.label(), model,
+                           neighbors, warped);
 }
 
 }  // namespace splitfusion

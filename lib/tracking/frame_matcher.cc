@@ -10,8 +10,6 @@ namespace {
 
 constexpr std::uint16_t kNone = 0xffff;  // Layout.
 
-/// About a feature, pixels: what it is described by.
-constexpr int kWindowMargin = 24;
 /// Flow that differs more from a feature within that is wrong, pixels.
 constexpr double kAgreeing = 3;
 cv::Rect Around(cv::Rect box, int margin, const cv::Size& size) {

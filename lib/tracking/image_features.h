@@ -8,6 +8,9 @@
 
 namespace splitfusion {
 
+/// About a feature, pixels: what it is described by.
+constexpr int kWindowMargin = 24;
+
 /// Points of an image, and how each looks.
 struct ImageFeatures {
   std::vector<cv::Vec2f> pixels;  ///< Column and row.

@@ -73,11 +73,13 @@ TEST(GraphGrowth, NewNodesMoveWithTheRestInEveryFrame) {
   MotionHistory history;
   DeformationGraph moved = graph;
   ApplyRigidMotion(earlier, &moved);
-  history.frames.push_back({4, true, moved.motions});
+  history.frames.push_back(
+      {4, true, moved.motions, std::vector<char>(moved.size(), true)});
   ApplyRigidMotion(now, &graph);
   ASSERT_GT(GrowGraph(PartOfPlate(0.4), GraphOptions(), &graph, &history), 0);
   ASSERT_EQ(history.frames[0].motions.size(), graph.motions.size());
   for (int i = 0; i < graph.size(); ++i) {
+    EXPECT_EQ(history.frames[0].Saw(i), i < moved.size()) << "not seen then";
     const Eigen::Vector3d& g = graph.positions[i];
     const Eigen::Vector3d p = g + Eigen::Vector3d(0.01, -0.01, 0.02);
     EXPECT_LT((ApplyNode(g, graph.motions[i], p) - now * p).norm(), 1e-5);

@@ -23,7 +23,7 @@ NodeMotion Motion(double value) {
 
 MotionHistory TwoFrames() {
   MotionHistory history;
-  history.frames.push_back({3, true, {Motion(0.1), Motion(0.2)}});
+  history.frames.push_back({3, true, {Motion(0.1), Motion(0.2)}, {0, 1}});
   history.frames.push_back({5, false, {Motion(0.3), Motion(0.4)}});
   return history;
 }
@@ -49,20 +49,24 @@ TEST(Motions, RoundTripInFloat) {
   const NodeMotion& motion = read.frames[1].motions[1];
   EXPECT_TRUE(motion.rotation.isApprox(expected.rotation, 1e-6));
   EXPECT_TRUE(motion.translation.isApprox(expected.translation, 1e-6));
+  EXPECT_FALSE(read.frames[0].Saw(0));
+  EXPECT_TRUE(read.frames[0].Saw(1));
+  EXPECT_FALSE(read.frames[1].Saw(1)) << "not known";
 }
 
 TEST(Motions, HaveTheDocumentedLayout) {
   const TemporaryFolder folder;
   WriteMotions(folder / "motions.bin", TwoFrames());
   const std::string bytes = folder.Read("motions.bin");
-  ASSERT_EQ(bytes.size(), 8 + 8 + 2 * (8 + 2 * 48) + 8);
-  EXPECT_EQ(bytes.substr(0, 8), "SFMOTN02");
+  ASSERT_EQ(bytes.size(), 8 + 8 + 2 * (8 + 2 * 49) + 8);
+  EXPECT_EQ(bytes.substr(0, 8), "SFMOTN03");
   std::uint64_t checksum = 0;
   bytes.copy(reinterpret_cast<char*>(&checksum), 8, bytes.size() - 8);
   EXPECT_EQ(checksum, Checksum64(bytes.data(), bytes.size() - 8));
   float translation_y = 0;
   bytes.copy(reinterpret_cast<char*>(&translation_y), 4, 24 + 10 * 4);
   EXPECT_EQ(translation_y, 2);
+  EXPECT_EQ(bytes.substr(24 + 2 * 48, 2), std::string("\0\1", 2));
 }
 
 TEST(Motions, OfNoFrameAreFine) {
@@ -99,21 +103,37 @@ TEST(Motions, EveryChangedByteIsNoticed) {
   }
 }
 
-/// The same file as version 01 had it: without a checksum.
+/// The file of TwoFrames() as version 01 had it: without a checksum, and
+/// without what was seen.
 std::string FirstVersion(std::string bytes) {
   bytes.resize(bytes.size() - 8);
+  constexpr std::size_t kSeen = 2, kFrame = 8 + 2 * 48, kHead = 16;
+  bytes.erase(kHead + 2 * kFrame + kSeen, kSeen);
+  bytes.erase(kHead + kFrame, kSeen);
   bytes[7] = '1';
   return bytes;
 }
 
-TEST(Motions, OfTheFirstVersionAreRead) {
+/// As version 02 had it: with a checksum.
+std::string SecondVersion(const std::string& bytes) {
+  std::string second = FirstVersion(bytes);
+  second[7] = '2';
+  const std::uint64_t checksum = Checksum64(second.data(), second.size());
+  return second.append(reinterpret_cast<const char*>(&checksum), 8);
+}
+
+TEST(Motions, OfOlderVersionsAreRead) {
   const TemporaryFolder folder;
   WriteMotions(folder / "motions.bin", TwoFrames());
-  folder.Write("old.bin", FirstVersion(folder.Read("motions.bin")));
-  const MotionHistory read = ReadMotions(folder / "old.bin");
-  ASSERT_EQ(read.frames.size(), 2u);
-  EXPECT_TRUE(
-      read.frames[1].motions[1].rotation.isApprox(Motion(0.4).rotation, 1e-6));
+  const std::string bytes = folder.Read("motions.bin");
+  for (const std::string& old : {FirstVersion(bytes), SecondVersion(bytes)}) {
+    folder.Write("old.bin", old);
+    const MotionHistory read = ReadMotions(folder / "old.bin");
+    ASSERT_EQ(read.frames.size(), 2u);
+    EXPECT_TRUE(read.frames[1].motions[1].rotation.isApprox(
+        Motion(0.4).rotation, 1e-6));
+    EXPECT_TRUE(read.frames[0].seen.empty());
+  }
 }
 
 TEST(Motions, ThatCannotBeAreRefused) {
@@ -141,7 +161,7 @@ TEST(Motions, ThatCannotBeAreRefused) {
 
 TEST(Motions, OfMoreFramesThanTheFileHoldsAreNotAllocated) {
   const TemporaryFolder folder;
-  folder.Write("huge.bin", "SFMOTN02" + std::string(8, '\xff'));
+  folder.Write("huge.bin", "SFMOTN03" + std::string(8, '\xff'));
   ExpectInputError([&] { ReadMotions(folder / "huge.bin"); },
                    "huge.bin: 16 bytes: expected ");
 }

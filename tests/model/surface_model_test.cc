@@ -25,7 +25,9 @@ SurfaceModel MovingPlate(int first, int last, double width = 0.3) {
     for (NodeMotion& motion : model.graph.motions) {
       motion.translation.y() = 0.01 * frame;
     }
-    model.history.frames.push_back({frame, true, model.graph.motions});
+    model.history.frames.push_back(
+        {frame, true, model.graph.motions,
+         std::vector<char>(model.graph.size(), true)});
   }
   return model;
 }
@@ -53,6 +55,8 @@ TEST(JoinModels, ShowsEachModelInItsFramesWhereItWas) {
   ASSERT_EQ(joined.history.frames.size(), 8u);
   for (const FrameMotions& frame : joined.history.frames) {
     const bool late = frame.frame >= 5;
+    EXPECT_EQ(frame.Saw(0), !late);
+    EXPECT_EQ(frame.Saw(nodes), late);
     const auto triangles =
         SeenTriangles(joined.mesh, skinning, joined.graph, frame.frame);
     ASSERT_EQ(triangles.size(), first.mesh.triangles.size()) << frame.frame;
@@ -117,6 +121,7 @@ TEST(PartOf, IsCarriedAsItWas) {
   EXPECT_LT(part.graph.size(), plate.graph.size());
   ASSERT_EQ(part.history.frames.size(), 3u);
   EXPECT_EQ(part.history.frames[0].motions.size(), part.graph.motions.size());
+  EXPECT_EQ(part.history.frames[0].seen.size(), part.graph.motions.size());
   const WarpField warp(part.graph), whole(plate.graph);
   const SkinningIndex part_index(part.graph, 6);
   for (const Eigen::Vector3f& v : part.mesh.vertices) {

@@ -107,6 +107,30 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
   }
 }
 
+TEST(Surface, KnowsWhichNodesAreSeen) {
+  Surface box = MakeBox(SurfaceKind::kNonRigid);
+  ASSERT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+  const auto seen = [&](const LiveView& live) {
+    const std::vector<char> nodes = box.SeenNodes(live);
+    EXPECT_EQ(static_cast<int>(nodes.size()), box.graph().size());
+    return static_cast<double>(std::count(nodes.begin(), nodes.end(), true)) /
+           box.graph().size();
+  };
+  EXPECT_GT(seen(ViewWithBox(kWhole)), 0.7) << "but at depth edges";
+  EXPECT_LT(seen(ViewWithBox(kHalf)), 0.6);
+  EXPECT_GT(seen(ViewWithBox(kHalf)), 0.3);
+  LiveView other = ViewWithBox(kWhole);
+  other.labels.setTo(0);
+  EXPECT_EQ(seen(other), 0) << "another surface is there";
+  ApplyRigidMotion(MakeMotion({0, 0, 0}, {0, 0, 0.2}), box.mutable_graph());
+  EXPECT_EQ(seen(ViewWithBox(kWhole)), 0) << "it is hidden behind that";
+  box.RecordMotions(4, true, box.SeenNodes(ViewWithBox(kWhole)));
+  EXPECT_FALSE(box.history().frames[0].Saw(0));
+  Surface rigid = MakeBox(SurfaceKind::kRigid);
+  ASSERT_TRUE(rigid.Initialize(ViewWithBox(kWhole)));
+  EXPECT_EQ(rigid.SeenNodes(other), std::vector<char>{true});
+}
+
 TEST(Surface, BeginsAnewUnderItsIdAndKeepsWhatItWas) {
   Surface box = MakeBox(SurfaceKind::kNonRigid);
   ASSERT_TRUE(box.Initialize(ViewWithBox(kHalf)));
@@ -436,7 +460,7 @@ TEST(Surface, IsWrittenWithConstantVertexOrder) {
   ApplyRigidMotion(MakeMotion({0, 0, 0}, {0.5, 0, 0}), box.mutable_graph());
   box.RecordMotions(5, true);
   box.RecordMotions(6, false);
-  WriteSurface(RunPaths(folder.Make("run")), box,
+  WriteSurface(RunPaths(folder.Make("run")), box, box.Model(),
                {/*every=*/2, /*whole=*/false});
   const std::string at = "run/surfaces/001_teddy_bear/";
   EXPECT_FALSE(folder.Has(at + "warped/000005.ply"));
@@ -472,7 +496,8 @@ TEST(Surface, WarpedMeshesHoldWhatWasSeenByThen) {
             box.graph().size());
   const auto warped = [&](bool whole, const std::string& frame) {
     const std::string run = whole ? "whole" : "seen";
-    WriteSurface(RunPaths(folder.Make(run)), box, {/*every=*/1, whole});
+    WriteSurface(RunPaths(folder.Make(run)), box, box.Model(),
+                 {/*every=*/1, whole});
     return ReadPly(folder /
                    (run + "/surfaces/001_teddy_bear/warped/" + frame + ".ply"));
   };

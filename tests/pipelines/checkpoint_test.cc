@@ -52,7 +52,8 @@ std::string FinalFiles(SyntheticRun* run) {
   run->fusion().Finish();
   const TemporaryFolder folder;
   for (const auto& [id, surface] : run->fusion().surfaces()) {
-    WriteSurface(RunPaths(folder.Make("run")), *surface, {1, true});
+    WriteSurface(RunPaths(folder.Make("run")), *surface, surface->Model(),
+                 {1, true});
   }
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder / "run")) {

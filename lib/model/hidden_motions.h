@@ -1,0 +1,70 @@
+#ifndef SPLITFUSION_LIB_MODEL_HIDDEN_MOTIONS_H_
+#define SPLITFUSION_LIB_MODEL_HIDDEN_MOTIONS_H_
+
+#include <map>
+#include <vector>
+
+#include "splitfusion/lib/base/option_list.h"
+#include "splitfusion/lib/geometry/rigid3.h"
+#include "splitfusion/lib/model/surface_model.h"
+
+namespace splitfusion {
+
+/// How motions are looked for where nothing was seen.
+struct HiddenMotionOptions {
+  bool refine = true;  ///< Once all frames are known.
+  /// Weight of smoothness in time, of that of Eq. 6.
+  double smoothness = 100;
+  /// Frames of which the motions are found together; half of them are kept, and
+  /// the others found anew with those that follow.
+  int window = 64;
+
+  /// Names, ranges and meaning of all fields.
+  void List(OptionList* list);
+};
+
+/// The two terms that say where hidden nodes are, square metres.
+struct HiddenMotionCost {
+  double arap = 0;        ///< Sum of |r|^2, Eq. 6.
+  double smoothness = 0;  ///< Weighted sum of |r|^2.
+};
+
+/// One window of one part of a surface.
+struct RefinedWindow {
+  int part = 0;         ///< Index among DeformationGraph::parts.
+  int first_frame = 0;  ///< Index.
+  int last_frame = 0;   ///< Index.
+  int hidden = 0;       ///< Unknowns: hidden nodes, each frame counted.
+  int iterations = 0;   ///< Of places and rotations, in turn.
+  bool solved = true;   ///< False: the motions are as they were.
+  HiddenMotionCost initial, final;  ///< Where it began, and ended.
+  double seconds = 0;               ///< Wall time.
+};
+
+/// Finds the motions of nodes in the frames in which they were not seen
+/// (FrameMotions::seen), between the first and the last in which anything of
+/// their part of the surface was. What was seen stays. A frame alone has no
+/// more than its neighbours on the surface to say where a hidden node is; the
+/// whole sequence has its last and its next sight. Minimised is
+///
+///   E = sum |c_i - c_j - R_i (g_i - g_j)|^2
+///       + mu sum |w(t-1) - 2 w(t) + w(t+1)|^2
+///
+/// over all edges (Eq. 6) and nodes, in all frames; c: centres of nodes in the
+/// camera frame, w: the same in the world, mu: options.smoothness. Places and
+/// rotations are found in turn (Sorkine and Alexa 2007), the places by one
+/// sparse factorisation (CHOLMOD). Frames that are left out count by the time
+/// between them. Not in the paper; Dou et al. 2015 and Li et al. 2020 optimise
+/// over whole sequences.
+///
+/// `world_from_camera`: by frame index, of all frames of the history. The one
+/// node of a rigid surface counts as if it were amid its mesh.
+/// @return by part, then in time; none where nothing is hidden. Does not depend
+///     on the number of threads.
+std::vector<RefinedWindow> RefineHiddenMotions(
+    const std::map<int, Rigid3d>& world_from_camera,
+    const HiddenMotionOptions& options, SurfaceModel* model);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_MODEL_HIDDEN_MOTIONS_H_

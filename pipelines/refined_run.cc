@@ -1,0 +1,208 @@
+#include "splitfusion/pipelines/refined_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/json_file.h"
+#include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/report/html_report.h"
+#include "splitfusion/lib/report/refinement_report.h"
+#include "splitfusion/lib/report/run_summary.h"
+#include "splitfusion/lib/report/surface_output.h"
+
+namespace splitfusion {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Whether a file of the run is written anew, or is no more than what it was
+/// made from: checkpoints have the motions as they were tracked.
+bool IsWrittenAnew(const std::string& path) {
+  const RunPaths here("");
+  const fs::path file(path);
+  const std::string first = file.begin()->string();
+  return path == here.Refinement() || path == here.Summary() ||
+         path == here.HtmlReport() || path == here.Options() ||
+         path == here.Evaluation() || first == "checkpoints" ||
+         file.filename() == "motions.bin" ||
+         file.parent_path().filename() == "warped";
+}
+
+/// The options by the names that they have as flags.
+std::map<std::string, std::string> ValuesOf(HiddenMotionOptions options) {
+  options.refine = true;
+  OptionList list;
+  options.List(&list);
+  std::map<std::string, std::string> values;
+  for (const Option& option : list.options()) {
+    values[option.name] = option.ValueText();
+  }
+  return values;
+}
+
+std::map<int, Rigid3d> PosesOf(const RecordedRun& run) {
+  std::map<int, Rigid3d> poses;
+  for (const RecordedFrame& frame : run.frames) {
+    poses[frame.index] = frame.pose.world_from_camera;
+  }
+  return poses;
+}
+
+/// What was refined, over all surfaces.
+struct Refinement {
+  int hidden = 0;
+  std::string lines;
+  std::map<int, double> stretched;  // By surface, shares.
+  double seconds = 0;
+};
+
+/// @throw InputError if nothing is known of what was seen.
+void CheckSeen(const std::string& root, const RecordedSurface& surface) {
+  const auto& frames = surface.motions.frames;
+  if (std::any_of(frames.begin(), frames.end(), [](const FrameMotions& frame) {
+        return !frame.seen.empty();
+      })) {
+    return;
+  }
+  throw InputError(root + ": motions.bin of surface " +
+                   std::to_string(surface.id) +
+                   " does not say which nodes were seen: expected a run of "
+                   "this version of sf_run");
+}
+
+void RefineSurface(const std::map<int, Rigid3d>& poses,
+                   const HiddenMotionOptions& options,
+                   const WarpedOutput& warped, const RunPaths& to,
+                   RecordedSurface surface, Refinement* refinement) {
+  SurfaceModel model{std::move(surface.mesh), std::move(surface.graph),
+                     std::move(surface.motions)};
+  // The camera's motion was measured in every frame.
+  const bool is_room = surface.id == 0 && model.graph.rigid();
+  if (!is_room) {
+    const Stopwatch stopwatch;
+    const std::vector<RefinedWindow> windows =
+        RefineHiddenMotions(poses, options, &model);
+    refinement->seconds += stopwatch.Seconds();
+    for (const RefinedWindow& w : windows) refinement->hidden += w.hidden;
+    refinement->lines += RefinementLines(surface.id, windows);
+  }
+  WriteMotions(to.Surface(surface.id, surface.label) + "/motions.bin",
+               model.history);
+  if (is_room) return;
+  const StretchedArea stretch =
+      WriteWarpedMeshes(to, surface.id, surface.label, model,
+                        surface.neighbors_per_point, warped);
+  if (stretch.area > 0) {
+    refinement->stretched[surface.id] = stretch.Share();
+  }
+}
+
+/// summary.json of the run with what is another now.
+Json SummaryWith(const Refinement& refinement, Json summary) {
+  for (Json& surface : summary["surfaces"]) {
+    const auto found = refinement.stretched.find(surface["id"].get<int>());
+    if (found != refinement.stretched.end()) {
+      surface["stretched"] = found->second;
+    }
+  }
+  summary["seconds_refining"] = refinement.seconds;
+  return summary;
+}
+
+}  // namespace
+
+RefinedRun::RefinedRun(std::string root, const HiddenMotionOptions& options)
+    : root_(std::move(root)), options_(options) {
+  CheckOptions(options_);
+  const std::optional<RunMarker> marker = ReadRunMarker(root_);
+  if (!marker || marker->status != RunStatus::kComplete) {
+    throw InputError(root_ + ": holds no complete run: expected one");
+  }
+  marker_ = *marker;
+  const std::string missing = FindMissing(marker_, root_);
+  if (!missing.empty()) throw InputError(root_ + ": " + missing);
+  for (const auto& [path, file] : marker_.files) {
+    if (fs::path(path).filename() == "motions.bin") {
+      CheckRunFile(marker_, root_, path);
+    }
+  }
+  run_ = ReadRun(root_);
+  for (const RecordedSurface& surface : run_.surfaces) {
+    CheckSeen(root_, surface);
+  }
+}
+
+RunIdentity RefinedRun::Identity() const {
+  RunIdentity identity = marker_.identity;
+  identity.parts["refined_from"] = marker_.identity.Hash();
+  identity.parts["method"] = MethodHash();
+  for (const auto& [name, value] : ValuesOf(options_)) {
+    identity.parts[name] = value;
+  }
+  return identity;
+}
+
+void RefinedRun::CopyFiles(const RunPaths& to) const {
+  for (const auto& [path, file] : marker_.files) {
+    if (IsWrittenAnew(path)) continue;
+    CheckRunFile(marker_, root_, path);
+    const fs::path target = fs::path(to.root()) / path;
+    std::error_code error;
+    fs::create_directories(target.parent_path(), error);
+    fs::copy_file(fs::path(root_) / path, target,
+                  fs::copy_options::overwrite_existing, error);
+    if (error) {
+      throw InputError(target.string() +
+                       ": cannot be written: " + error.message());
+    }
+  }
+}
+
+void RefinedRun::WriteOptions(const RunPaths& to) const {
+  const auto values = ValuesOf(options_);
+  std::ifstream before(RunPaths(root_).Options());
+  std::string text;
+  for (std::string line; std::getline(before, line);) {
+    for (const auto& [name, value] : values) {
+      if (line.rfind("--" + name + "=", 0) == 0) {
+        line = "--" + name + "=" + value;
+      }
+    }
+    text += line + "\n";
+  }
+  WriteFileAtomically(to.Options(), [&](std::ostream& out) { out << text; });
+}
+
+int RefinedRun::Write(RunFolder* folder) {
+  const RunPaths& to = folder->unfinished();
+  CopyFiles(to);
+  const std::map<int, Rigid3d> poses = PosesOf(run_);
+  const NamedValues& outputs = marker_.identity.outputs;
+  const WarpedOutput warped{std::stoi(outputs.at("warped_every")),
+                            outputs.at("warped_whole") == "true"};
+  Refinement refinement;
+  for (RecordedSurface& surface : run_.surfaces) {
+    RefineSurface(poses, options_, warped, to, std::move(surface), &refinement);
+  }
+  WriteFileAtomically(to.Refinement(), [&](std::ostream& out) {
+    out << refinement.lines;
+  });
+  WriteOptions(to);
+  const Json summary = SummaryWith(
+      refinement, ReadJsonOrNull(RunPaths(root_).Summary()));
+  WriteHtmlReport(to, summary);
+  WriteJson(to.Summary(), summary, 2);
+  folder->CheckHeld();
+  folder->Publish(RunStatus::kComplete);
+  return refinement.hidden;
+}
+
+}  // namespace splitfusion

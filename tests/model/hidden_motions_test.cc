@@ -1,0 +1,367 @@
+#include "splitfusion/lib/model/hidden_motions.h"
+
+#include <ceres/ceres.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <array>
+#include <functional>
+#include <utility>
+
+#include "splitfusion/cost_functions/arap.h"
+#include "support/expect_input_error.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+
+namespace splitfusion {
+namespace {
+
+using Map = std::function<Eigen::Vector3d(const Eigen::Vector3d&, int frame)>;
+
+/// Poses of a camera that moves and turns, world from camera.
+std::map<int, Rigid3d> Poses(const std::vector<int>& frames) {
+  std::map<int, Rigid3d> poses;
+  for (const int frame : frames) {
+    poses[frame] =
+        MakeMotion({0, 0.01 * frame, 0}, {0.02 * frame, 0, 0.01 * frame});
+  }
+  return poses;
+}
+
+std::vector<int> FramesUpTo(int last) {
+  std::vector<int> frames;
+  for (int frame = 0; frame <= last; ++frame) frames.push_back(frame);
+  return frames;
+}
+
+/// A plate that `map` moves in the world, all of it seen.
+SurfaceModel SeenPlate(const std::map<int, Rigid3d>& poses, const Map& map) {
+  SurfaceModel model;
+  model.mesh = PlateMesh(0.3, 0.2, 0.02, 1);
+  model.graph = CoverWithNodes(model.mesh, 0.05);
+  for (const auto& [frame, pose] : poses) {
+    DeformationGraph graph = model.graph;
+    MoveNodes([&, index = frame, view = pose.inverse()](
+                  const Eigen::Vector3d& p) { return view * map(p, index); },
+              &graph);
+    model.history.frames.push_back(
+        {frame, true, graph.motions, std::vector<char>(graph.size(), true)});
+  }
+  return model;
+}
+
+/// The plate was in sight in neither of these frames, and stood still in the
+/// camera's frame, for the nodes that `is_hidden` tells.
+void Hide(int first, int last, const std::function<bool(int)>& is_hidden,
+          SurfaceModel* model) {
+  const std::vector<NodeMotion> before =
+      model->history.Find(first - 1)->motions;
+  for (FrameMotions& frame : model->history.frames) {
+    if (frame.frame < first || frame.frame > last) continue;
+    for (int i = 0; i < model->graph.size(); ++i) {
+      if (!is_hidden(i)) continue;
+      frame.seen[i] = false;
+      frame.motions[i] = before[i];
+    }
+  }
+}
+
+bool All(int /*node*/) { return true; }
+
+double FarthestNode(const SurfaceModel& a, const SurfaceModel& b) {
+  double farthest = 0;
+  for (std::size_t f = 0; f < a.history.frames.size(); ++f) {
+    for (int i = 0; i < a.graph.size(); ++i) {
+      const NodeMotion& one = a.history.frames[f].motions[i];
+      const NodeMotion& other = b.history.frames[f].motions[i];
+      farthest =
+          std::max(farthest, (one.translation - other.translation).norm());
+    }
+  }
+  return farthest;
+}
+
+/// Walks along x and sinks.
+Eigen::Vector3d Walk(const Eigen::Vector3d& p, int frame) {
+  return p + Eigen::Vector3d(0.03 * frame, 0.0005 * frame * frame, 0);
+}
+
+TEST(HiddenMotions, OfWhatWalksOnUnseenAreThoseOfItsWay) {
+  const auto poses = Poses(FramesUpTo(30));
+  const SurfaceModel truth = SeenPlate(poses, Walk);
+  SurfaceModel model = truth;
+  Hide(10, 24, All, &model);
+  ASSERT_GT(FarthestNode(model, truth), 0.2);
+  const std::vector<RefinedWindow> windows =
+      RefineHiddenMotions(poses, {}, &model);
+  EXPECT_LT(FarthestNode(model, truth), 0.005);
+  ASSERT_EQ(windows.size(), 1u);
+  EXPECT_EQ(windows[0].hidden, 15 * model.graph.size());
+  EXPECT_TRUE(windows[0].solved);
+  EXPECT_EQ(windows[0].first_frame, 0);
+  EXPECT_EQ(windows[0].last_frame, 30);
+  EXPECT_LT(windows[0].final.smoothness, 0.1 * windows[0].initial.smoothness);
+}
+
+TEST(HiddenMotions, OfWhatTurnsUnseenTurnWithIt) {
+  const auto poses = Poses(FramesUpTo(30));
+  const SurfaceModel truth =
+      SeenPlate(poses, [](const Eigen::Vector3d& p, int frame) {
+        const Eigen::Vector3d center(0, 0, 1);
+        return Eigen::Vector3d(
+            MakeMotion({0, 0.04 * frame, 0}, {0.01 * frame, 0, 0}) *
+                (p - center) +
+            center);
+      });
+  SurfaceModel model = truth;
+  Hide(8, 22, All, &model);
+  RefineHiddenMotions(poses, {}, &model);
+  EXPECT_LT(FarthestNode(model, truth), 0.01);
+  for (std::size_t f = 0; f < truth.history.frames.size(); ++f) {
+    EXPECT_LT(RotationAngle(
+                  model.history.frames[f].motions[0].rotation.transpose() *
+                  truth.history.frames[f].motions[0].rotation),
+              0.03);
+  }
+}
+
+TEST(HiddenMotions, OfAPartGoOnWithWhatIsSeenBesideIt) {
+  const auto poses = Poses(FramesUpTo(30));
+  const SurfaceModel truth = SeenPlate(poses, Walk);
+  SurfaceModel model = truth;
+  const auto is_right = [&](int i) {
+    return model.graph.positions[i].x() > 0.05;
+  };
+  Hide(10, 24, is_right, &model);
+  RefineHiddenMotions(poses, {}, &model);
+  EXPECT_LT(FarthestNode(model, truth), 0.005);
+}
+
+TEST(HiddenMotions, WhatWasSeenKeepsItsBits) {
+  const auto poses = Poses(FramesUpTo(30));
+  SurfaceModel model = SeenPlate(poses, Walk);
+  Hide(10, 24, All, &model);
+  const SurfaceModel before = model;
+  RefineHiddenMotions(poses, {}, &model);
+  for (std::size_t f = 0; f < before.history.frames.size(); ++f) {
+    const FrameMotions& frame = before.history.frames[f];
+    const auto& after = model.history.frames[f].motions;
+    for (int i = 0; i < model.graph.size(); ++i) {
+      EXPECT_EQ(frame.Saw(i),
+                after[i].translation == frame.motions[i].translation &&
+                    after[i].rotation == frame.motions[i].rotation)
+          << frame.frame;
+    }
+  }
+}
+
+TEST(HiddenMotions, BeforeTheFirstAndAfterTheLastSightStayAsTheyAre) {
+  const auto poses = Poses(FramesUpTo(30));
+  SurfaceModel model = SeenPlate(poses, Walk);
+  for (FrameMotions& frame : model.history.frames) {
+    if (frame.frame >= 5 && frame.frame <= 20) continue;
+    frame.seen.assign(frame.seen.size(), false);
+  }
+  const SurfaceModel before = model;
+  EXPECT_TRUE(RefineHiddenMotions(poses, {}, &model).empty());
+  EXPECT_EQ(FarthestNode(model, before), 0);
+  for (FrameMotions& frame : model.history.frames) frame.seen.clear();
+  EXPECT_TRUE(RefineHiddenMotions(poses, {}, &model).empty());
+  EXPECT_EQ(FarthestNode(model, before), 0) << "never seen";
+}
+
+TEST(HiddenMotions, OfARigidSurfaceAreThoseOfItsMiddle) {
+  std::map<int, Rigid3d> poses;
+  for (const int frame : FramesUpTo(20)) poses[frame] = Rigid3d::Identity();
+  const auto motion = [](int frame) {
+    return MakeMotion({0, 0, 0.03 * frame}, {0.02 * frame, 0, 0});
+  };
+  SurfaceModel model;
+  model.mesh = PlateMesh(0.3, 0.2, 0.02, 1);
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3f& v : model.mesh.vertices) {
+    middle += v.cast<double>() / model.mesh.vertices.size();
+  }
+  for (const auto& [frame, pose] : poses) {
+    const Rigid3d placed = Eigen::Translation3d(middle) * motion(frame) *
+                           Eigen::Translation3d(-middle);
+    model.graph = MakeRigidGraph(placed);
+    model.history.frames.push_back({frame, true, model.graph.motions, {1}});
+  }
+  const SurfaceModel truth = model;
+  Hide(6, 15, All, &model);
+  RefineHiddenMotions(poses, {}, &model);
+  EXPECT_LT(FarthestNode(model, truth), 1e-3);
+}
+
+TEST(HiddenMotions, FramesLeftOutCountByTime) {
+  std::vector<int> frames = FramesUpTo(10);
+  for (int frame = 14; frame <= 40; frame += 3) frames.push_back(frame);
+  const auto poses = Poses(frames);
+  const SurfaceModel truth =
+      SeenPlate(poses, [](const Eigen::Vector3d& p, int frame) {
+        return Eigen::Vector3d(p + Eigen::Vector3d(0.02 * frame, 0, 0));
+      });
+  SurfaceModel model = truth;
+  Hide(8, 29, All, &model);
+  RefineHiddenMotions(poses, {}, &model);
+  EXPECT_LT(FarthestNode(model, truth), 5e-3);
+}
+
+TEST(HiddenMotions, PartsAreFoundInTheirFramesAlone) {
+  const auto poses = Poses(FramesUpTo(30));
+  SurfaceModel first = SeenPlate(poses, Walk);
+  first.history.frames.resize(20);
+  Hide(5, 12, All, &first);
+  SurfaceModel second = SeenPlate(poses, Walk);
+  second.history.frames.erase(second.history.frames.begin(),
+                              second.history.frames.begin() + 20);
+  SurfaceModel joined = JoinModels({&first, &second});
+  const std::vector<RefinedWindow> windows =
+      RefineHiddenMotions(poses, {}, &joined);
+  ASSERT_EQ(windows.size(), 1u);
+  EXPECT_EQ(windows[0].part, 0);
+  EXPECT_EQ(windows[0].hidden, 8 * first.graph.size());
+  EXPECT_EQ(windows[0].last_frame, 19);
+}
+
+TEST(HiddenMotions, ShortWindowsAgreeWithLongOnes) {
+  const auto poses = Poses(FramesUpTo(60));
+  const SurfaceModel truth = SeenPlate(poses, Walk);
+  SurfaceModel model = truth;
+  Hide(5, 10, All, &model);
+  Hide(30, 36, All, &model);
+  SurfaceModel other = model;
+  HiddenMotionOptions options;
+  RefineHiddenMotions(poses, options, &model);
+  options.window = 32;
+  const std::vector<RefinedWindow> windows =
+      RefineHiddenMotions(poses, options, &other);
+  EXPECT_GT(windows.size(), 1u);
+  EXPECT_LT(FarthestNode(model, other), 2e-3);
+  EXPECT_LT(FarthestNode(other, truth), 5e-3);
+}
+
+TEST(HiddenMotions, DoNotDependOnThreads) {
+  const auto poses = Poses(FramesUpTo(30));
+  SurfaceModel first = SeenPlate(poses, Walk);
+  Hide(10, 24, All, &first);
+  const SurfaceModel joined = JoinModels({&first, &first, &first});
+  std::array<SurfaceModel, 2> models = {joined, joined};
+  for (const std::size_t threads : {1, 4}) {
+    const tbb::global_control limit(
+        tbb::global_control::max_allowed_parallelism, threads);
+    RefineHiddenMotions(poses, {}, &models[threads / 4]);
+  }
+  EXPECT_EQ(FarthestNode(models[0], models[1]), 0);
+}
+
+/// Weighted second difference in time of a node's centre, in the world.
+struct SmoothInTime {
+  std::array<Eigen::Vector3d, 3> centers;  // Camera frames.
+  std::array<Rigid3d, 3> poses;            // World from camera.
+  double root;
+
+  template <typename T>
+  bool operator()(T const* const* twists, T* residual) const {
+    Eigen::Matrix<T, 3, 1> sum = Eigen::Matrix<T, 3, 1>::Zero();
+    constexpr std::array<double, 3> kWeights = {1, -2, 1};
+    for (int k = 0; k < 3; ++k) {
+      Eigen::Matrix<T, 3, 1> center = centers[k].cast<T>();
+      for (int d = 0; d < 3; ++d) center[d] += twists[k][3 + d];
+      sum += T(root * kWeights[k]) *
+             (poses[k].linear().cast<T>() * center +
+              poses[k].translation().cast<T>());
+    }
+    for (int d = 0; d < 3; ++d) residual[d] = sum[d];
+    return true;
+  }
+};
+
+/// The same energy as a Ceres problem over the twists of all nodes, those that
+/// were seen held. Returns its least cost, twice Ceres'.
+double LeastCost(const std::map<int, Rigid3d>& poses, double smoothness,
+                 const SurfaceModel& model) {
+  const auto& frames = model.history.frames;
+  const int nodes = model.graph.size();
+  std::vector<std::array<double, 6>> twists(frames.size() * nodes, {{}});
+  ceres::Problem problem;
+  const auto block = [&](std::size_t f, int i) {
+    return twists[f * nodes + i].data();
+  };
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    DeformationGraph graph = model.graph;
+    graph.motions = frames[f].motions;
+    for (int i = 0; i < nodes; ++i) {
+      problem.AddParameterBlock(block(f, i), 6);
+      if (frames[f].Saw(i)) problem.SetParameterBlockConstant(block(f, i));
+    }
+    for (int i = 0; i < nodes; ++i) {
+      for (const int j : graph.neighbors[i]) {
+        auto* cost = new ceres::DynamicAutoDiffCostFunction<Arap>(
+            new Arap(Arap::Make(graph, i, j)));
+        cost->AddParameterBlock(6);
+        cost->AddParameterBlock(6);
+        cost->SetNumResiduals(3);
+        problem.AddResidualBlock(cost, nullptr, {block(f, i), block(f, j)});
+      }
+      if (f == 0 || f + 1 == frames.size()) continue;
+      auto* smooth = new SmoothInTime;
+      std::vector<double*> blocks;
+      for (int k = 0; k < 3; ++k) {
+        const FrameMotions& frame = frames[f + k - 1];
+        smooth->centers[k] =
+            model.graph.positions[i] + frame.motions[i].translation;
+        smooth->poses[k] = poses.at(frame.frame);
+        blocks.push_back(block(f + k - 1, i));
+      }
+      smooth->root = std::sqrt(smoothness);
+      auto* cost = new ceres::DynamicAutoDiffCostFunction<SmoothInTime>(smooth);
+      for (int k = 0; k < 3; ++k) cost->AddParameterBlock(6);
+      cost->SetNumResiduals(3);
+      problem.AddResidualBlock(cost, nullptr, blocks);
+    }
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-12;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return 2 * (summary.final_cost - summary.fixed_cost);
+}
+
+TEST(HiddenMotions, HaveTheLeastEnergyThatCeresFinds) {
+  const auto poses = Poses(FramesUpTo(12));
+  SurfaceModel model =
+      SeenPlate(poses, [](const Eigen::Vector3d& p, int frame) {
+        const double curvature = 0.2 * frame;
+        return Walk(curvature > 0 ? Bend(p, 1, curvature) : p, frame);
+      });
+  const auto is_right = [&](int i) {
+    return model.graph.positions[i].x() > -0.05;
+  };
+  Hide(3, 8, is_right, &model);
+  const SurfaceModel before = model;
+  const std::vector<RefinedWindow> windows =
+      RefineHiddenMotions(poses, {}, &model);
+  ASSERT_EQ(windows.size(), 1u);
+  const double cost = windows[0].final.arap + windows[0].final.smoothness;
+  for (const SurfaceModel* start : {&before, &std::as_const(model)}) {
+    const double least = LeastCost(poses, 100, *start);
+    EXPECT_GT(cost, 0.99 * least);
+    EXPECT_LT(cost, 1.02 * least);
+  }
+}
+
+TEST(HiddenMotions, OptionsAreChecked) {
+  HiddenMotionOptions options;
+  options.window = 3;
+  ExpectInputError([&] { CheckOptions(options); }, "refine_window");
+  options = {};
+  options.smoothness = 0;
+  ExpectInputError([&] { CheckOptions(options); }, "refine_smoothness");
+}
+
+}  // namespace
+}  // namespace splitfusion
