@@ -56,6 +56,22 @@ std::map<int, Rigid3d> PosesOf(const RecordedRun& run) {
   return poses;
 }
 
+/// The warped meshes that the run has.
+///
+/// @throw InputError if its marker does not say.
+WarpedOutput WarpedOf(const std::string& root, const RunMarker& marker) {
+  const NamedValues& outputs = marker.identity.outputs;
+  const auto every = outputs.find("warped_every");
+  const auto whole = outputs.find("warped_whole");
+  if (every == outputs.end() || whole == outputs.end() ||
+      every->second.find_first_not_of("0123456789") != std::string::npos) {
+    throw InputError(root +
+                     "/run.json: expected outputs warped_every, a number, and "
+                     "warped_whole");
+  }
+  return {std::stoi("0" + every->second.substr(0, 8)), whole->second == "true"};
+}
+
 /// What was refined, over all surfaces.
 struct Refinement {
   int hidden = 0;
@@ -185,19 +201,16 @@ int RefinedRun::Write(RunFolder* folder) {
   const RunPaths& to = folder->unfinished();
   CopyFiles(to);
   const std::map<int, Rigid3d> poses = PosesOf(run_);
-  const NamedValues& outputs = marker_.identity.outputs;
-  const WarpedOutput warped{std::stoi(outputs.at("warped_every")),
-                            outputs.at("warped_whole") == "true"};
+  const WarpedOutput warped = WarpedOf(root_, marker_);
   Refinement refinement;
   for (RecordedSurface& surface : run_.surfaces) {
     RefineSurface(poses, options_, warped, to, std::move(surface), &refinement);
   }
-  WriteFileAtomically(to.Refinement(), [&](std::ostream& out) {
-    out << refinement.lines;
-  });
+  WriteFileAtomically(to.Refinement(),
+                      [&](std::ostream& out) { out << refinement.lines; });
   WriteOptions(to);
-  const Json summary = SummaryWith(
-      refinement, ReadJsonOrNull(RunPaths(root_).Summary()));
+  const Json summary =
+      SummaryWith(refinement, ReadJsonOrNull(RunPaths(root_).Summary()));
   WriteHtmlReport(to, summary);
   WriteJson(to.Summary(), summary, 2);
   folder->CheckHeld();

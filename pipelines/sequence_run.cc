@@ -338,7 +338,8 @@ void SequenceRun::WriteSurfaces() {
   for (const auto& [id, surface] : fusion.surfaces()) {
     SurfaceModel model = surface->Model();
     if (hidden.refine && !surface->is_ray_cast()) {
-      refined += RefinementLines(id, RefineHiddenMotions(poses, hidden, &model));
+      refined +=
+          RefinementLines(id, RefineHiddenMotions(poses, hidden, &model));
     }
     directory_->AddRefiningSeconds(stopwatch.Restart());
     const StretchedArea stretch =

@@ -248,8 +248,8 @@ TrackState SplitFusion::StateOf(int id) const {
   return id == 0 ? background_state_ : splitter_.tracks().at(id).state;
 }
 
-std::vector<Rigid3d> SplitFusion::WaysToWhereSeen(
-    const Surface& surface, SurfaceReport* report) const {
+std::vector<Rigid3d> SplitFusion::WaysToWhereSeen(const Surface& surface,
+                                                  SurfaceReport* report) const {
   const Stopwatch stopwatch;
   std::vector<Rigid3d> ways;
   const auto add = [&](const std::optional<Rigid3d>& way) {

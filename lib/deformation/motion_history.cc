@@ -185,8 +185,7 @@ void CheckFrame(const std::string& path, const FrameMotions& frame,
   }
 }
 
-FrameMotions ReadFrame(std::uint32_t nodes, bool has_seen,
-                       ByteReader* reader) {
+FrameMotions ReadFrame(std::uint32_t nodes, bool has_seen, ByteReader* reader) {
   FrameMotions frame;
   frame.frame = reader->Read<std::int32_t>();
   frame.tracked = reader->Read<std::int32_t>() != 0;
@@ -222,8 +221,7 @@ MotionHistory ReadMotions(const std::string& path) {
   const auto nodes = reader.Read<std::uint32_t>();
   MotionHistory history;
   for (std::uint32_t i = 0; i < frames; ++i) {
-    FrameMotions frame =
-        ReadFrame(nodes, VersionOf(bytes)->has_seen, &reader);
+    FrameMotions frame = ReadFrame(nodes, VersionOf(bytes)->has_seen, &reader);
     CheckFrame(path, frame, history);
     history.frames.push_back(std::move(frame));
   }

@@ -56,8 +56,8 @@ struct MotionHistory {
 /// @throw InputError if the file cannot be written.
 void WriteMotions(const std::string& path, const MotionHistory& history);
 
-/// Reads what WriteMotions wrote, files of version 02, which do not say what was
-/// seen, and of version 01, which have no checksum either.
+/// Reads what WriteMotions wrote, files of version 02, which do not say what
+/// was seen, and of version 01, which have no checksum either.
 ///
 /// @throw InputError on a missing, truncated, damaged or foreign file; also if
 ///     frames do not ascend or a motion is not finite or no rotation.

@@ -31,10 +31,10 @@ struct PartMotions {
   int nodes() const { return static_cast<int>(rest.size()); }
 
   int first_node = 0;
-  std::vector<Eigen::Vector3d> rest;         // Places, canonical.
-  std::vector<std::vector<int>> neighbors;   // By their number in the part.
-  std::vector<int> indices;                  // Of the frames.
-  std::vector<std::vector<State>> states;    // By frame, then node.
+  std::vector<Eigen::Vector3d> rest;        // Places, canonical.
+  std::vector<std::vector<int>> neighbors;  // By their number in the part.
+  std::vector<int> indices;                 // Of the frames.
+  std::vector<std::vector<State>> states;   // By frame, then node.
 };
 
 /// Where the centre of a node is: that of a rigid surface amid its mesh.
@@ -80,8 +80,9 @@ PartMotions MotionsInWorld(const SurfaceModel& model, std::size_t index,
     auto& states = motions.states.emplace_back();
     for (int i = part.node; i < end; ++i) {
       const NodeMotion& motion = frame.motions[i];
-      states.push_back({pose * ApplyNode(graph.positions[i], motion, centers[i]),
-                        pose.linear() * motion.rotation, !frame.Saw(i)});
+      states.push_back(
+          {pose * ApplyNode(graph.positions[i], motion, centers[i]),
+           pose.linear() * motion.rotation, !frame.Saw(i)});
     }
   }
   return motions;
@@ -103,6 +104,29 @@ void LeaveEndsAlone(PartMotions* motions) {
   // Of a part that was never seen the first pass leaves nothing to seek.
   leave(motions->states.begin(), motions->states.end());
   leave(motions->states.rbegin(), motions->states.rend());
+}
+
+/// Before its first and after its last sight a node stays where tracking had
+/// it, beside what was seen of the part; where nothing was, it goes with that.
+void LeaveOneSided(PartMotions* motions) {
+  std::vector<int> first(motions->nodes(), motions->frames());
+  std::vector<int> last(motions->nodes(), -1);
+  std::vector<char> sees(motions->frames(), false);
+  for (int f = 0; f < motions->frames(); ++f) {
+    for (int i = 0; i < motions->nodes(); ++i) {
+      if (motions->states[f][i].hidden) continue;
+      first[i] = std::min(first[i], f);
+      last[i] = f;
+      sees[f] = true;
+    }
+  }
+  for (int f = 0; f < motions->frames(); ++f) {
+    for (int i = 0; i < motions->nodes(); ++i) {
+      if (sees[f] != 0 && (f < first[i] || f > last[i])) {
+        motions->states[f][i].hidden = false;
+      }
+    }
+  }
 }
 
 /// Spreads the turn with which a node comes into sight again over the frames in
@@ -183,8 +207,8 @@ class Window {
     Places right = kStay * start_;
     ForEachEdge([&](int f, int i, int j) {
       const std::array<int, 2> number = {Number(f, i), Number(f, j)};
-      AddKnown(number, {1, -1}, 1, {Place(f, i), Place(f, j)}, RestEdge(f, i, j),
-               &right);
+      AddKnown(number, {1, -1}, 1, {Place(f, i), Place(f, j)},
+               RestEdge(f, i, j), &right);
     });
     ForEachDifference([&](int f, int i, const std::array<double, 3>& weights) {
       AddKnown(NumbersAt(f, i), weights, smoothness_,
@@ -246,7 +270,8 @@ class Window {
 
   /// -1: known.
   int Number(int frame, int node) const {
-    return frame < begin_ || frame >= end_ ? -1 : numbers_[frame - begin_][node];
+    return frame < begin_ || frame >= end_ ? -1
+                                           : numbers_[frame - begin_][node];
   }
 
   std::array<int, 3> NumbersAt(int frame, int node) const {
@@ -345,8 +370,8 @@ class Window {
 /// Finds what is hidden in frames [begin, end).
 RefinedWindow Refine(int begin, int end, const HiddenMotionOptions& options,
                      PartMotions* motions) {
-  constexpr int kMaxIterations = 30;
-  constexpr double kSettled = 1e-4;  // Maths. Metres.
+  constexpr int kMaxIterations = 10;  // Speed: 30 move nothing more.
+  constexpr double kSettled = 1e-4;   // Maths. Metres.
   const Stopwatch stopwatch;
   Window window(motions, begin, end, options.smoothness);
   RefinedWindow report;
@@ -414,9 +439,10 @@ void HiddenMotionOptions::List(OptionList* list) {
   list->Switch("refine", &refine,
                "Once all frames are known, find the motions of what was hidden "
                "between its last and its next sight.");
-  list->Number("refine_smoothness", &smoothness, Range::Above(0), "",
-               "Weight of smoothness in time of what was hidden, of that of its "
-               "shape.");
+  list->Number(
+      "refine_smoothness", &smoothness, Range::Above(0), "",
+      "Weight of smoothness in time of what was hidden, of that of its "
+      "shape.");
   list->Number("refine_window", &window, Range::AtLeast(4), "frames",
                "Frames of which the motions are found together.");
 }
@@ -431,6 +457,7 @@ std::vector<RefinedWindow> RefineHiddenMotions(
     PartMotions motions =
         MotionsInWorld(*model, index, centers, world_from_camera);
     LeaveEndsAlone(&motions);
+    LeaveOneSided(&motions);
     SpreadTurns(&motions);
     windows[index] = RefinePart(options, &motions);
     Store(motions, world_from_camera, model);

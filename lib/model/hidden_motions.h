@@ -17,7 +17,7 @@ struct HiddenMotionOptions {
   double smoothness = 100;
   /// Frames of which the motions are found together; half of them are kept, and
   /// the others found anew with those that follow.
-  int window = 64;
+  int window = 32;
 
   /// Names, ranges and meaning of all fields.
   void List(OptionList* list);
@@ -42,8 +42,10 @@ struct RefinedWindow {
 };
 
 /// Finds the motions of nodes in the frames in which they were not seen
-/// (FrameMotions::seen), between the first and the last in which anything of
-/// their part of the surface was. What was seen stays. A frame alone has no
+/// (FrameMotions::seen), between their first and their last sight; of the other
+/// nodes too in frames in which nothing of their part of the surface was seen,
+/// between the first and the last in which anything was. All else stays as it
+/// was tracked. A frame alone has no
 /// more than its neighbours on the surface to say where a hidden node is; the
 /// whole sequence has its last and its next sight. Minimised is
 ///

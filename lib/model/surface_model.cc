@@ -204,9 +204,9 @@ SurfaceModel PartOf(const TriangleMesh& mesh,
   const int first = FirstSight(graph, members.nearest);
   for (const FrameMotions& frame : history.frames) {
     if (frame.frame < first) continue;
-    part.history.frames.push_back(
-        {frame.frame, frame.tracked, Chosen(frame.motions, members.nodes),
-         Chosen(frame.seen, members.nodes)});
+    part.history.frames.push_back({frame.frame, frame.tracked,
+                                   Chosen(frame.motions, members.nodes),
+                                   Chosen(frame.seen, members.nodes)});
   }
   return part;
 }

@@ -5,13 +5,6 @@
 #include "splitfusion/lib/base/json_file.h"
 
 namespace splitfusion {
-namespace {
-
-nlohmann::ordered_json CostJson(const HiddenMotionCost& cost) {
-  return {{"arap", cost.arap}, {"smoothness", cost.smoothness}};
-}
-
-}  // namespace
 
 std::string RefinementLines(int surface,
                             const std::vector<RefinedWindow>& windows) {
@@ -25,8 +18,10 @@ std::string RefinementLines(int surface,
         {"hidden", window.hidden},
         {"iterations", window.iterations},
         {"solved", window.solved},
-        {"initial", CostJson(window.initial)},
-        {"final", CostJson(window.final)},
+        {"initial_arap", window.initial.arap},
+        {"initial_smoothness", window.initial.smoothness},
+        {"final_arap", window.final.arap},
+        {"final_smoothness", window.final.smoothness},
         {"seconds", window.seconds}};
     lines += JsonText(line) + "\n";
   }

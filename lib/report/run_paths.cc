@@ -68,12 +68,12 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
 bool RunPaths::IsOfRun(const std::string& name) {
   const RunPaths here("");
   const std::array<std::string, 20> names = {
-      here.Marker(),     here.Checkpoint(),  "checkpoints",
-      here.Options(),    here.Calibration(), here.Trajectory(),
-      here.Frames(),     here.Iterations(),  here.Summary(),
-      here.Evaluation(), here.HtmlReport(),  here.Pictures(),
-      here.Detections(), "solver",           "masks",
-      "surfaces",        "problems",         "uncertainty",
+      here.Marker(),      here.Checkpoint(),  "checkpoints",
+      here.Options(),     here.Calibration(), here.Trajectory(),
+      here.Frames(),      here.Iterations(),  here.Summary(),
+      here.Evaluation(),  here.HtmlReport(),  here.Pictures(),
+      here.Detections(),  "solver",           "masks",
+      "surfaces",         "problems",         "uncertainty",
       here.ColorCamera(), here.Refinement()};
   return std::find(names.begin(), names.end(), name) != names.end();
 }

@@ -15,11 +15,11 @@ struct WarpedOutput {
   bool whole = false;  ///< With what was seen only later.
 };
 
-/// Writes warped/FRAME.ply of RUN/surfaces/NNN_LABEL for every `warped.every`-th
-/// frame since the surface's birth (0 = none): the final mesh carried into that
-/// frame's camera, so that vertex i is the same surface point in all of them;
-/// unless `warped.whole`, with no more than had been seen by then
-/// (SeenTriangles), and without triangles that are stretched. Returns what
+/// Writes warped/FRAME.ply of RUN/surfaces/NNN_LABEL for every
+/// `warped.every`-th frame since the surface's birth (0 = none): the final mesh
+/// carried into that frame's camera, so that vertex i is the same surface point
+/// in all of them; unless `warped.whole`, with no more than had been seen by
+/// then (SeenTriangles), and without triangles that are stretched. Returns what
 /// there was of these in all warped meshes together.
 ///
 /// `id`, `label`: of the surface; `neighbors`: K of Eq. 3.

@@ -48,9 +48,9 @@ std::vector<Eigen::Vector3f> Lifted(const ImageFeatures& features,
   std::vector<Eigen::Vector3f> points;
   for (const cv::Vec2f& pixel : features.pixels) {
     const float z = depth(cvRound(pixel[1]), cvRound(pixel[0]));
-    points.push_back(camera.BackProject(
-        pixel[0] + static_cast<float>(box.x),
-        pixel[1] + static_cast<float>(box.y), z));
+    points.push_back(camera.BackProject(pixel[0] + static_cast<float>(box.x),
+                                        pixel[1] + static_cast<float>(box.y),
+                                        z));
   }
   return points;
 }
@@ -98,9 +98,8 @@ std::optional<Rigid3d> LastSights::FindMotion(int surface, const LiveView& live,
   whole.count = 1;
   whole.radius = whole.reach = std::numeric_limits<double>::max();
   whole.inlier = kAgreeingDistance;
-  const std::vector<RigidPart> found =
-      FindRigidParts(Match(sight->second, surface, live, ratio),
-                     live.camera.noise, whole);
+  const std::vector<RigidPart> found = FindRigidParts(
+      Match(sight->second, surface, live, ratio), live.camera.noise, whole);
   if (found.empty()) return {};
   return found.front().motion * Rigid3d(sight->second.pose) *
          predicted.inverse();

@@ -105,23 +105,22 @@ TEST(HiddenMotions, OfWhatWalksOnUnseenAreThoseOfItsWay) {
 
 TEST(HiddenMotions, OfWhatTurnsUnseenTurnWithIt) {
   const auto poses = Poses(FramesUpTo(30));
-  const SurfaceModel truth =
-      SeenPlate(poses, [](const Eigen::Vector3d& p, int frame) {
-        const Eigen::Vector3d center(0, 0, 1);
-        return Eigen::Vector3d(
-            MakeMotion({0, 0.04 * frame, 0}, {0.01 * frame, 0, 0}) *
-                (p - center) +
-            center);
-      });
+  const SurfaceModel truth = SeenPlate(poses, [](const Eigen::Vector3d& p,
+                                                 int frame) {
+    const Eigen::Vector3d center(0, 0, 1);
+    return Eigen::Vector3d(
+        MakeMotion({0, 0.04 * frame, 0}, {0.01 * frame, 0, 0}) * (p - center) +
+        center);
+  });
   SurfaceModel model = truth;
   Hide(8, 22, All, &model);
   RefineHiddenMotions(poses, {}, &model);
   EXPECT_LT(FarthestNode(model, truth), 0.01);
   for (std::size_t f = 0; f < truth.history.frames.size(); ++f) {
-    EXPECT_LT(RotationAngle(
-                  model.history.frames[f].motions[0].rotation.transpose() *
-                  truth.history.frames[f].motions[0].rotation),
-              0.03);
+    EXPECT_LT(
+        RotationAngle(model.history.frames[f].motions[0].rotation.transpose() *
+                      truth.history.frames[f].motions[0].rotation),
+        0.03);
   }
 }
 
@@ -168,6 +167,27 @@ TEST(HiddenMotions, BeforeTheFirstAndAfterTheLastSightStayAsTheyAre) {
   for (FrameMotions& frame : model.history.frames) frame.seen.clear();
   EXPECT_TRUE(RefineHiddenMotions(poses, {}, &model).empty());
   EXPECT_EQ(FarthestNode(model, before), 0) << "never seen";
+}
+
+TEST(HiddenMotions, OfNodesNeverSeenAgainStayAsTheyWereTracked) {
+  const auto poses = Poses(FramesUpTo(30));
+  SurfaceModel model = SeenPlate(poses, Walk);
+  const auto is_right = [&](int i) {
+    return model.graph.positions[i].x() > 0.05;
+  };
+  Hide(10, 30, is_right, &model);
+  Hide(15, 20, All, &model);
+  const SurfaceModel before = model;
+  RefineHiddenMotions(poses, {}, &model);
+  for (std::size_t f = 0; f < before.history.frames.size(); ++f) {
+    for (int i = 0; i < model.graph.size(); ++i) {
+      const int frame = before.history.frames[f].frame;
+      const bool nothing_is_seen = frame >= 15 && frame <= 20;
+      EXPECT_EQ(nothing_is_seen,
+                model.history.frames[f].motions[i].translation !=
+                    before.history.frames[f].motions[i].translation);
+    }
+  }
 }
 
 TEST(HiddenMotions, OfARigidSurfaceAreThoseOfItsMiddle) {
@@ -233,6 +253,7 @@ TEST(HiddenMotions, ShortWindowsAgreeWithLongOnes) {
   Hide(30, 36, All, &model);
   SurfaceModel other = model;
   HiddenMotionOptions options;
+  options.window = 100;
   RefineHiddenMotions(poses, options, &model);
   options.window = 32;
   const std::vector<RefinedWindow> windows =
@@ -269,9 +290,8 @@ struct SmoothInTime {
     for (int k = 0; k < 3; ++k) {
       Eigen::Matrix<T, 3, 1> center = centers[k].cast<T>();
       for (int d = 0; d < 3; ++d) center[d] += twists[k][3 + d];
-      sum += T(root * kWeights[k]) *
-             (poses[k].linear().cast<T>() * center +
-              poses[k].translation().cast<T>());
+      sum += T(root * kWeights[k]) * (poses[k].linear().cast<T>() * center +
+                                      poses[k].translation().cast<T>());
     }
     for (int d = 0; d < 3; ++d) residual[d] = sum[d];
     return true;

@@ -169,6 +169,10 @@ TEST_F(ReportFormat, HasTheKeysOfTheSummary) {
   EXPECT_EQ(Section("summary.json").keys(), KeysOf("summary.json"));
 }
 
+TEST_F(ReportFormat, HasTheKeysOfTheRefinement) {
+  EXPECT_EQ(Section("refinement.jsonl").keys(), KeysOf("refinement.jsonl"));
+}
+
 TEST_F(ReportFormat, HasTheColumnsOfTheIterationsInTheirOrder) {
   std::stringstream lines(folder_->Read("run/iterations.csv"));
   std::string header;

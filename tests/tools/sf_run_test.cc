@@ -67,6 +67,7 @@ TEST_F(SfRun, WritesWhatTheContractNames) {
                            "iterations.csv",
                            "options.flags",
                            "report.html",
+                           "refinement.jsonl",
                            "surfaces/000_background/mesh.ply",
                            "surfaces/000_background/tsdf.vdb",
                            "surfaces/000_background/graph.json",

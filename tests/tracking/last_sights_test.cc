@@ -38,8 +38,7 @@ LiveView ViewOfPlate(const Rigid3d& pose, bool is_printed = true) {
   const Rigid3d plate_from_camera = pose.inverse();
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 0; u < depth.cols; ++u) {
-      const Eigen::Vector3d ray =
-          kSightCamera.BackProject<double>(u, v, 1.0);
+      const Eigen::Vector3d ray = kSightCamera.BackProject<double>(u, v, 1.0);
       const Eigen::Vector3d direction = plate_from_camera.linear() * ray;
       const double z = -plate_from_camera.translation().z() / direction.z();
       const Eigen::Vector3d p = plate_from_camera * (z * ray);
@@ -52,7 +51,8 @@ LiveView ViewOfPlate(const Rigid3d& pose, bool is_printed = true) {
       const int x = static_cast<int>(1000 * (p.x() + kHalfWidth) / 1.001);
       const int y = static_cast<int>(1000 * (p.y() + kHalfHeight) / 1.001);
       const int grey = is_printed ? print(y, x) : 128;
-      color.at<cv::Vec3b>(v, u) = cv::Vec3b::all(cv::saturate_cast<uchar>(grey));
+      color.at<cv::Vec3b>(v, u) =
+          cv::Vec3b::all(cv::saturate_cast<uchar>(grey));
     }
   }
   LiveView live = MakeLiveView(kSightCamera, depth, color);

@@ -1,0 +1,148 @@
+// The program sf_refine, as others call it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "sf_run_fixture.h"
+#include "splitfusion/lib/deformation/motion_history.h"
+#include "support/expect_refused.h"
+
+namespace splitfusion {
+namespace {
+
+using ::testing::HasSubstr;
+
+class SfRefine : public SfRun {
+ protected:
+  void SetUp() override {
+    SfRun::SetUp();
+    if (!HasProgram("sf_refine")) GTEST_SKIP() << "sf_refine is not built";
+  }
+
+  ProgramResult Refine(const std::string& output,
+                       const std::string& arguments = "") const {
+    return RunProgram("sf_refine", (folder_ / "run") + " --output=" +
+                                       (folder_ / output) + " " + arguments);
+  }
+
+  void MakeRun(const std::string& arguments = "") const {
+    Synthesize("--frames=12");
+    const ProgramResult result =
+        Run("run", "--pictures_every=0 --warped_every=4 " + arguments);
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+  }
+
+  MotionHistory Motions(const std::string& run) const {
+    return ReadMotions(folder_ / (run + "/surfaces/001_person/motions.bin"));
+  }
+
+  /// Motions of nodes that differ between two runs: of nodes that were seen,
+  /// and of others.
+  std::pair<int, int> Differences(const std::string& a,
+                                  const std::string& b) const {
+    const MotionHistory one = Motions(a), other = Motions(b);
+    std::pair<int, int> count;
+    EXPECT_EQ(one.frames.size(), other.frames.size());
+    for (std::size_t f = 0; f < one.frames.size(); ++f) {
+      const auto& motions = one.frames[f].motions;
+      for (int i = 0; i < static_cast<int>(motions.size()); ++i) {
+        if (motions[i].translation == other.frames[f].motions[i].translation) {
+          continue;
+        }
+        ++(one.frames[f].Saw(i) ? count.first : count.second);
+      }
+    }
+    return count;
+  }
+};
+
+TEST_F(SfRefine, FindsHiddenMotionsOfAFinishedRun) {
+  MakeRun("--refine=false");
+  EXPECT_FALSE(folder_.Has("run/refinement.jsonl"));
+  const ProgramResult result = Refine("refined");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("motions of hidden nodes"));
+  const auto [seen, hidden] = Differences("run", "refined");
+  EXPECT_EQ(seen, 0);
+  EXPECT_GT(hidden, 0);
+  int counted = 0;
+  std::istringstream lines(folder_.Read("refined/refinement.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    const auto window = nlohmann::json::parse(line);
+    EXPECT_TRUE(window["solved"].get<bool>());
+    counted += window["hidden"].get<int>();
+  }
+  EXPECT_GE(counted, hidden);
+  EXPECT_EQ(folder_.Read("refined/trajectory.txt"),
+            folder_.Read("run/trajectory.txt"));
+  EXPECT_EQ(folder_.Read("refined/surfaces/001_person/mesh.ply"),
+            folder_.Read("run/surfaces/001_person/mesh.ply"));
+  EXPECT_TRUE(folder_.Has("refined/surfaces/001_person/warped/000008.ply"));
+  EXPECT_TRUE(folder_.Has("refined/report.html"));
+  EXPECT_THAT(folder_.Read("refined/options.flags"),
+              HasSubstr("--refine=true\n"));
+  EXPECT_EQ(
+      RunProgram("sf_evaluate", "--run=" + (folder_ / "refined")).exit_code, 0);
+}
+
+TEST_F(SfRefine, IsWhatTheRunItselfWouldHaveDone) {
+  MakeRun("--refine=false");
+  const ProgramResult whole =
+      Run("whole", "--pictures_every=0 --warped_every=4");
+  ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+  ASSERT_EQ(Refine("refined").exit_code, 0);
+  const MotionHistory a = Motions("whole"), b = Motions("refined");
+  double farthest = 0;
+  for (std::size_t f = 0; f < a.frames.size(); ++f) {
+    for (std::size_t i = 0; i < a.frames[f].motions.size(); ++i) {
+      farthest = std::max(farthest, (a.frames[f].motions[i].translation -
+                                     b.frames[f].motions[i].translation)
+                                        .norm());
+    }
+  }
+  EXPECT_LT(farthest, 1e-4) << "the run's files hold floats and six decimals";
+}
+
+TEST_F(SfRefine, TakesOtherWeightsAndIsDoneOnce) {
+  MakeRun();
+  ASSERT_EQ(Refine("soft", "--refine_smoothness=0.1 --threads=1").exit_code, 0);
+  EXPECT_GT(Differences("run", "soft").second, 0);
+  EXPECT_THAT(folder_.Read("soft/options.flags"),
+              HasSubstr("--refine_smoothness=0.1\n"));
+  EXPECT_THAT(Refine("soft", "--refine_smoothness=0.1").output,
+              HasSubstr("nothing to do"));
+  EXPECT_NE(Refine("soft").exit_code, 0) << "of other options";
+  EXPECT_EQ(Refine("soft", "--overwrite").exit_code, 0);
+  ASSERT_EQ(Refine("threads", "--threads=2").exit_code, 0);
+  EXPECT_EQ(folder_.Read("soft/surfaces/001_person/motions.bin"),
+            folder_.Read("threads/surfaces/001_person/motions.bin"));
+}
+
+TEST_F(SfRefine, SaysWhatIsWrong) {
+  const std::string output = " --output=" + (folder_ / "out");
+  ExpectRefused("sf_refine", output, "RUN = 0: expected one run directory");
+  ExpectRefused("sf_refine", folder_ / "none",
+                "--output = '': expected a folder to write");
+  ExpectRefused("sf_refine", (folder_ / "none") + output,
+                "holds no complete run");
+  ExpectRefused("sf_refine",
+                (folder_ / "none") + output + " --refine_smoothness=0",
+                "--refine_smoothness = 0: expected > 0");
+  ExpectRefused("sf_refine", (folder_ / "none") + output + " --refine_window=2",
+                "--refine_window = 2: expected frames >= 4");
+  MakeRun();
+  const std::string motions = "run/surfaces/001_person/motions.bin";
+  const std::string bytes = folder_.Read(motions);
+  folder_.Write(motions, std::string(bytes.size(), 'x'));
+  EXPECT_THAT(Refine("out").errors, HasSubstr("motions.bin"));
+  EXPECT_FALSE(folder_.Has("out/run.json"));
+  folder_.Write(motions, bytes);
+  EXPECT_EQ(Refine("out").exit_code, 0);
+}
+
+}  // namespace
+}  // namespace splitfusion
