@@ -5,6 +5,9 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -107,7 +110,7 @@ void RefineSurface(const std::map<int, Rigid3d>& poses,
     const std::vector<RefinedWindow> windows =
         RefineHiddenMotions(poses, options, &model);
     refinement->seconds += stopwatch.Seconds();
-    for (const RefinedWindow& w : windows) refinement->hidden += w.hidden;
+    for (const RefinedWindow& w : windows) refinement->hidden += w.kept;
     refinement->lines += RefinementLines(surface.id, windows);
   }
   WriteMotions(to.Surface(surface.id, surface.label) + "/motions.bin",
@@ -129,7 +132,12 @@ Json SummaryWith(const Refinement& refinement, Json summary) {
       surface["stretched"] = found->second;
     }
   }
+  const double before = summary["seconds_refining"];
+  const double frames = std::max(1, summary["frames"].get<int>());
+  const double all = summary["seconds_per_frame_all_passes"];
   summary["seconds_refining"] = refinement.seconds;
+  summary["seconds_per_frame_all_passes"] =
+      all + (refinement.seconds - before) / frames;
   return summary;
 }
 
@@ -146,10 +154,14 @@ RefinedRun::RefinedRun(std::string root, const HiddenMotionOptions& options)
   const std::string missing = FindMissing(marker_, root_);
   if (!missing.empty()) throw InputError(root_ + ": " + missing);
   for (const auto& [path, file] : marker_.files) {
-    if (fs::path(path).filename() == "motions.bin") {
-      CheckRunFile(marker_, root_, path);
-    }
+    // What is copied alone is checked then.
+    const fs::path name(path);
+    const bool is_read =
+        name.parent_path().empty() || name.filename() == "motions.bin" ||
+        name.filename() == "graph.json" || name.filename() == "mesh.ply";
+    if (is_read) CheckRunFile(marker_, root_, path);
   }
+  WarpedOf(root_, marker_);
   run_ = ReadRun(root_);
   for (const RecordedSurface& surface : run_.surfaces) {
     CheckSeen(root_, surface);

@@ -259,10 +259,15 @@ std::vector<Rigid3d> SplitFusion::WaysToWhereSeen(const Surface& surface,
   const double deviation = options_.split.assignment.PlaceDeviation(
       predictors_.at(surface.id()).frames_since() + 1);
   const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
-  add(FindTranslation(VisibleSamples(RenderAlone(surface, camera), surface,
+  const std::optional<Rigid3d> shift =
+      FindTranslation(VisibleSamples(RenderAlone(surface, camera), surface,
                                      options_.render_stride),
                       WarpField(surface.graph()), live_,
-                      static_cast<std::uint16_t>(surface.id()), deviation));
+                      static_cast<std::uint16_t>(surface.id()), deviation);
+  add(shift);
+  // Where it was predicted a tracked one has just failed.
+  const bool failed = StateOf(surface.id()) == TrackState::kTracked;
+  if (!shift && !failed) ways.push_back(Rigid3d::Identity());
   report->render_seconds += stopwatch.Seconds();
   return ways;
 }
@@ -283,10 +288,7 @@ bool SplitFusion::TrackObject(bool goes_on, Surface* surface,
 bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
   const DeformationGraph before = surface->graph();
   const PointTracks tracks_before = tracker_->point_tracks();
-  std::vector<Rigid3d> ways = WaysToWhereSeen(*surface, report);
-  // Where it was predicted a tracked one has just failed.
-  const bool failed = StateOf(surface->id()) == TrackState::kTracked;
-  if (ways.empty() && !failed) ways.push_back(Rigid3d::Identity());
+  const std::vector<Rigid3d> ways = WaysToWhereSeen(*surface, report);
   const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
   for (const Rigid3d& way : ways) {
     ApplyRigidMotion(way, surface->mutable_graph());
@@ -467,10 +469,12 @@ std::map<int, Rigid3d> SplitFusion::PosesByFrame() const {
   std::map<int, Rigid3d> poses;
   const auto background = surfaces_.find(0);
   if (background == surfaces_.end()) return poses;
-  DeformationGraph graph = background->second->graph();
-  for (const FrameMotions& frame : background->second->history().frames) {
-    graph.motions = frame.motions;
-    poses[frame.frame] = MeanRigidMotion(graph).inverse();
+  // It has an entry for every frame since its birth, as the trajectory has.
+  const std::vector<FrameMotions>& frames =
+      background->second->history().frames;
+  const std::size_t before = trajectory_.size() - frames.size();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    poses[frames[i].frame] = trajectory_[before + i].world_from_camera;
   }
   return poses;
 }

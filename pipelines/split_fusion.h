@@ -127,7 +127,7 @@ class SplitFusion {
   TrackState StateOf(int id) const;
   /// Motions of the camera frame that may take a surface to where its live
   /// pixels are, the likeliest first: what it looked like tells, or what shape
-  /// it has.
+  /// it has; else it may be where it is predicted.
   std::vector<Rigid3d> WaysToWhereSeen(const Surface& surface,
                                        SurfaceReport* report) const;
   /// `goes_on`: as of SurfaceContext.

@@ -3,14 +3,13 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/CholmodSupport>
+#include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <iterator>
-
-#include "splitfusion/lib/base/stopwatch.h"
+#include <map>
+#include <vector>
 
 namespace splitfusion {
 namespace {
@@ -129,24 +128,29 @@ void LeaveOneSided(PartMotions* motions) {
   }
 }
 
-/// Spreads the turn with which a node comes into sight again over the frames in
-/// which it was hidden.
-void SpreadTurns(PartMotions* motions) {
+/// Spreads the way and the turn with which a node comes into sight again over
+/// the frames in which it was hidden: where its motion begins to be sought, and
+/// where it is taken to be beyond a window.
+void SpreadReturns(PartMotions* motions) {
   for (int i = 0; i < motions->nodes(); ++i) {
-    int last = -1;  // In which it was seen.
+    int last = -1;  // In which it was known.
     for (int f = 0; f < motions->frames(); ++f) {
-      if (motions->states[f][i].hidden) continue;
+      const PartMotions::State& now = motions->states[f][i];
+      if (now.hidden) continue;
       if (last >= 0 && f > last + 1) {
-        const Eigen::AngleAxisd turn(
-            motions->states[f][i].rotation *
-            motions->states[f - 1][i].rotation.transpose());
+        const PartMotions::State& before = motions->states[f - 1][i];
+        const Eigen::Vector3d way = now.place - before.place;
+        const Eigen::AngleAxisd turn(now.rotation *
+                                     before.rotation.transpose());
         const double span = motions->indices[f] - motions->indices[last];
         for (int k = last + 1; k < f; ++k) {
           const double share =
               (motions->indices[k] - motions->indices[last]) / span;
-          Eigen::Matrix3d& rotation = motions->states[k][i].rotation;
-          rotation =
-              Eigen::AngleAxisd(share * turn.angle(), turn.axis()) * rotation;
+          PartMotions::State& state = motions->states[k][i];
+          state.place += share * way;
+          state.rotation =
+              Eigen::AngleAxisd(share * turn.angle(), turn.axis()) *
+              state.rotation;
         }
       }
       last = f;
@@ -180,6 +184,22 @@ class Window {
 
   int unknowns() const { return unknowns_; }
 
+  /// Those before a frame.
+  int UnknownsBefore(int frame) const {
+    int count = 0;
+    for (int f = begin_; f < std::min(frame, end_); ++f) {
+      for (int i = 0; i < motions_.nodes(); ++i) count += Number(f, i) >= 0;
+    }
+    return count;
+  }
+
+  /// Leaves its motions as they were.
+  void GiveUp() {
+    ForEachUnknown([](int /*number*/, PartMotions::State& state) {
+      state.hidden = false;
+    });
+  }
+
   /// Factorises the matrix of the places; false if that fails.
   bool Factorize() {
     std::vector<Eigen::Triplet<double>> entries;
@@ -197,6 +217,9 @@ class Window {
     });
     Eigen::SparseMatrix<double> matrix(unknowns_, unknowns_);
     matrix.setFromTriplets(entries.begin(), entries.end());
+    // METIS draws random numbers of the whole process.
+    cholesky_.cholmod().nmethods = 1;
+    cholesky_.cholmod().method[0].ordering = CHOLMOD_AMD;
     cholesky_.cholmod().print = 0;
     cholesky_.compute(matrix);
     return cholesky_.info() == Eigen::Success;
@@ -309,10 +332,12 @@ class Window {
     }
   }
 
-  /// Second differences in time at frame f with a place that is sought.
+  /// Second differences in time at frame f with a place that is sought; what
+  /// lies behind the window is taken for known.
   template <typename Visit>
   void ForEachDifference(const Visit& visit) const {
-    for (int f = std::max(1, begin_ - 1); f + 1 < end_; ++f) {
+    for (int f = std::max(1, begin_ - 1);
+         f <= end_ && f + 1 < motions_.frames(); ++f) {
       const std::array<double, 3> weights =
           SecondDifference(motions_.indices[f - 1], motions_.indices[f],
                            motions_.indices[f + 1]);
@@ -367,17 +392,17 @@ class Window {
   Eigen::CholmodSimplicialLLT<Eigen::SparseMatrix<double>> cholesky_;
 };
 
-/// Finds what is hidden in frames [begin, end).
-RefinedWindow Refine(int begin, int end, const HiddenMotionOptions& options,
-                     PartMotions* motions) {
+/// Finds what is hidden in frames [begin, end); kept is what is before `kept`.
+RefinedWindow Refine(int begin, int end, int kept,
+                     const HiddenMotionOptions& options, PartMotions* motions) {
   constexpr int kMaxIterations = 10;  // Speed: 30 move nothing more.
   constexpr double kSettled = 1e-4;   // Maths. Metres.
-  const Stopwatch stopwatch;
   Window window(motions, begin, end, options.smoothness);
   RefinedWindow report;
   report.first_frame = motions->indices[begin];
   report.last_frame = motions->indices[end - 1];
   report.hidden = window.unknowns();
+  report.kept = window.UnknownsBefore(kept);
   if (report.hidden == 0) return report;
   report.initial = window.Cost();
   report.solved = window.Factorize();
@@ -387,9 +412,10 @@ RefinedWindow Refine(int begin, int end, const HiddenMotionOptions& options,
       way = window.FindPlaces();
       window.FindRotations();
     } while (++report.iterations < kMaxIterations && way > kSettled);
+  } else {
+    window.GiveUp();
   }
   report.final = window.Cost();
-  report.seconds = stopwatch.Seconds();
   return report;
 }
 
@@ -399,10 +425,12 @@ std::vector<RefinedWindow> RefinePart(const HiddenMotionOptions& options,
   std::vector<RefinedWindow> windows;
   for (int begin = 0; begin < motions->frames();) {
     const int end = std::min(begin + options.window, motions->frames());
-    const RefinedWindow window = Refine(begin, end, options, motions);
+    const bool is_last = end == motions->frames();
+    const int kept = is_last ? end : begin + options.window / 2;
+    const RefinedWindow window = Refine(begin, end, kept, options, motions);
     if (window.hidden > 0) windows.push_back(window);
-    if (end == motions->frames()) break;
-    begin += options.window / 2;
+    if (is_last) break;
+    begin = kept;
   }
   return windows;
 }
@@ -458,7 +486,7 @@ std::vector<RefinedWindow> RefineHiddenMotions(
         MotionsInWorld(*model, index, centers, world_from_camera);
     LeaveEndsAlone(&motions);
     LeaveOneSided(&motions);
-    SpreadTurns(&motions);
+    SpreadReturns(&motions);
     windows[index] = RefinePart(options, &motions);
     Store(motions, world_from_camera, model);
   });

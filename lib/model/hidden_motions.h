@@ -35,19 +35,21 @@ struct RefinedWindow {
   int first_frame = 0;  ///< Index.
   int last_frame = 0;   ///< Index.
   int hidden = 0;       ///< Unknowns: hidden nodes, each frame counted.
-  int iterations = 0;   ///< Of places and rotations, in turn.
-  bool solved = true;   ///< False: the motions are as they were.
-  HiddenMotionCost initial, final;  ///< Where it began, and ended.
-  double seconds = 0;               ///< Wall time.
+  /// Of these what the next window does not seek again.
+  int kept = 0;
+  int iterations = 0;        ///< Of places and rotations, in turn.
+  bool solved = true;        ///< False: the motions are as they were.
+  HiddenMotionCost initial;  ///< Where it began.
+  HiddenMotionCost final;    ///< Where it ended.
 };
 
 /// Finds the motions of nodes in the frames in which they were not seen
 /// (FrameMotions::seen), between their first and their last sight; of the other
 /// nodes too in frames in which nothing of their part of the surface was seen,
 /// between the first and the last in which anything was. All else stays as it
-/// was tracked. A frame alone has no
-/// more than its neighbours on the surface to say where a hidden node is; the
-/// whole sequence has its last and its next sight. Minimised is
+/// was tracked. A frame alone has no more than its neighbours on the surface to
+/// say where a hidden node is; the whole sequence has its last and its next
+/// sight. Minimised is
 ///
 ///   E = sum |c_i - c_j - R_i (g_i - g_j)|^2
 ///       + mu sum |w(t-1) - 2 w(t) + w(t+1)|^2

@@ -16,13 +16,13 @@ std::string RefinementLines(int surface,
         {"first_frame", window.first_frame},
         {"last_frame", window.last_frame},
         {"hidden", window.hidden},
+        {"kept", window.kept},
         {"iterations", window.iterations},
         {"solved", window.solved},
         {"initial_arap", window.initial.arap},
         {"initial_smoothness", window.initial.smoothness},
         {"final_arap", window.final.arap},
-        {"final_smoothness", window.final.smoothness},
-        {"seconds", window.seconds}};
+        {"final_smoothness", window.final.smoothness}};
     lines += JsonText(line) + "\n";
   }
   return lines;

@@ -67,7 +67,7 @@ class RunDirectory {
   /// `seconds_writing`.
   void AddWritingSeconds(double seconds) { seconds_writing_ += seconds; }
 
-  /// As `seconds_writing`, for `seconds_refining`.
+  /// Counts time to `seconds_refining`, at the end of a run.
   void AddRefiningSeconds(double seconds) { seconds_refining_ += seconds; }
 
   /// States what was written of a surface at the end.

@@ -49,8 +49,9 @@ std::map<std::string, RunFile> FilesOfRun(const std::string& folder) {
 /// Files that the next frames write again, or that only an ended run has.
 bool IsOfTheEnd(const std::string& path) {
   const std::string first = fs::path(path).begin()->string();
-  return first == "surfaces" || first == "summary.json" ||
-         first == "report.html" || first == "evaluation.json";
+  return first == "surfaces" || first == "refinement.jsonl" ||
+         first == "summary.json" || first == "report.html" ||
+         first == "evaluation.json";
 }
 
 void Rename(const fs::path& from, const fs::path& to) {

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/report/refinement_report.h"
 #include "support/program.h"
 #include "support/repository.h"
 #include "support/temporary_folder.h"
@@ -170,7 +171,9 @@ TEST_F(ReportFormat, HasTheKeysOfTheSummary) {
 }
 
 TEST_F(ReportFormat, HasTheKeysOfTheRefinement) {
-  EXPECT_EQ(Section("refinement.jsonl").keys(), KeysOf("refinement.jsonl"));
+  Keys keys;
+  CollectKeys(Json::parse(RefinementLines(1, {RefinedWindow()})), "", &keys);
+  EXPECT_EQ(Section("refinement.jsonl").keys(), keys);
 }
 
 TEST_F(ReportFormat, HasTheColumnsOfTheIterationsInTheirOrder) {

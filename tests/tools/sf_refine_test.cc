@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "sf_run_fixture.h"
 #include "splitfusion/lib/deformation/motion_history.h"
@@ -74,9 +76,18 @@ TEST_F(SfRefine, FindsHiddenMotionsOfAFinishedRun) {
   for (std::string line; std::getline(lines, line);) {
     const auto window = nlohmann::json::parse(line);
     EXPECT_TRUE(window["solved"].get<bool>());
-    counted += window["hidden"].get<int>();
+    counted += window["kept"].get<int>();
   }
   EXPECT_GE(counted, hidden);
+  EXPECT_THAT(result.output, HasSubstr(std::to_string(counted) + " motions"));
+  const auto summary =
+      nlohmann::json::parse(folder_.Read("refined/summary.json"));
+  EXPECT_NEAR(summary["seconds_per_frame_all_passes"].get<double>(),
+              summary["seconds_per_frame"]["mean"].get<double>() +
+                  (summary["seconds_refining"].get<double>() +
+                   summary["seconds_writing"].get<double>()) /
+                      12,
+              1e-9);
   EXPECT_EQ(folder_.Read("refined/trajectory.txt"),
             folder_.Read("run/trajectory.txt"));
   EXPECT_EQ(folder_.Read("refined/surfaces/001_person/mesh.ply"),
