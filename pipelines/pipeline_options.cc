@@ -71,6 +71,9 @@ void PipelineOptions::List(OptionList* list) {
                "an empty one, or --match_features and --parts above 0");
   list->Part("", &solver);
   list->Part("", &hidden);
+  list->Switch("best_view_colors", &best_view_colors,
+               "Once all frames are known, colour vertices from the frames "
+               "that show them well, instead of what fusion made of it.");
   list->Part("", &split);
   list->Part("ray_", &ray_cast);
 }

@@ -61,6 +61,9 @@ struct PipelineOptions {
   bool split_scene = true;     ///< False: one surface holds the whole scene.
   bool model_objects = true;   ///< False: moving things are only cut out.
   bool deform_objects = true;  ///< False: moving things are rigid.
+  /// Vertices are coloured anew once all frames are known, see
+  /// BestViewColors.
+  bool best_view_colors = true;
   bool deform_background = false;  ///< True: surface 0 is non-rigid.
   int min_tracked_pixels = 400;    ///< Fewer live pixels: surface is unseen.
   /// A surface of whose model less is in view, of what other surfaces could

@@ -19,6 +19,7 @@ const std::map<std::string, Change>& Presets() {
          o->tracker.settled = 0.01;
          o->tracker.part_start.parts.count = 0;
          o->hidden.refine = false;
+         o->best_view_colors = false;
        }},
       {"kinectfusion", [](PipelineOptions* o) { o->split_scene = false; }},
       {"dynamicfusion",

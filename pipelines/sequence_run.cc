@@ -19,6 +19,7 @@
 #include "splitfusion/lib/model/surface_uncertainty.h"
 #include "splitfusion/lib/report/frame_pictures.h"
 #include "splitfusion/lib/report/refinement_report.h"
+#include "splitfusion/pipelines/color_pass.h"
 
 namespace splitfusion {
 namespace {
@@ -328,30 +329,52 @@ void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
 }
 
 void SequenceRun::WriteSurfaces() {
+  frames_.reset();  // It may be reading ahead.
   Stopwatch stopwatch;
-  SplitFusion& fusion = work_->fusion;
-  fusion.Finish();
+  const SplitFusion& fusion = work_->fusion;
+  work_->fusion.Finish();
   directory_->AddWritingSeconds(stopwatch.Restart());
+  SurfaceModels models = RefinedModels();
+  directory_->AddRefiningSeconds(stopwatch.Restart());
+  ColorModels(&models);
+  directory_->AddColoringSeconds(stopwatch.Restart());
+  for (const auto& [id, surface] : fusion.surfaces()) {
+    const StretchedArea stretch = WriteSurface(directory_->paths(), *surface,
+                                               models.at(id), options_.warped);
+    directory_->SetWritten(
+        id, {surface->graph().size(),
+             static_cast<int>(surface->mesh().vertices.size()), stretch});
+  }
+  directory_->AddWritingSeconds(stopwatch.Restart());
+}
+
+/// With the motions of what was hidden; writes refinement.jsonl.
+SurfaceModels SequenceRun::RefinedModels() const {
+  const SplitFusion& fusion = work_->fusion;
   const std::map<int, Rigid3d> poses = fusion.PosesByFrame();
   const HiddenMotionOptions& hidden = fusion.options().hidden;
+  SurfaceModels models;
   std::string refined;
   for (const auto& [id, surface] : fusion.surfaces()) {
-    SurfaceModel model = surface->Model();
+    SurfaceModel& model = models[id] = surface->Model();
     if (hidden.refine && !surface->is_ray_cast()) {
       refined +=
           RefinementLines(id, RefineHiddenMotions(poses, hidden, &model));
     }
-    directory_->AddRefiningSeconds(stopwatch.Restart());
-    const StretchedArea stretch =
-        WriteSurface(directory_->paths(), *surface, model, options_.warped);
-    directory_->SetWritten(
-        id, {surface->graph().size(),
-             static_cast<int>(surface->mesh().vertices.size()), stretch});
-    directory_->AddWritingSeconds(stopwatch.Restart());
   }
-  if (!hidden.refine) return;
-  WriteFileAtomically(directory_->paths().Refinement(),
-                      [&](std::ostream& out) { out << refined; });
+  if (hidden.refine) {
+    WriteFileAtomically(directory_->paths().Refinement(),
+                        [&](std::ostream& out) { out << refined; });
+  }
+  return models;
+}
+
+/// From the frames that show them best.
+void SequenceRun::ColorModels(SurfaceModels* models) const {
+  if (!work_->fusion.options().best_view_colors) return;
+  const std::string trouble = ColorFromBestViews(
+      work_->reader, done_, work_->fusion, options_.reads_ahead, models);
+  if (!trouble.empty()) Warn(trouble);
 }
 
 /// Of a run that an error ended; a second error, as on a full disk, leaves

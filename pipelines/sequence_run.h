@@ -11,6 +11,7 @@
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/energy/problem_recorder.h"
 #include "splitfusion/lib/energy/solution_recorder.h"
+#include "splitfusion/lib/model/surface_model.h"
 #include "splitfusion/lib/report/checkpoint_schedule.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
@@ -135,6 +136,8 @@ class SequenceRun {
   void WriteResults(RunStatus status, const std::string& error = "");
   /// All surfaces, with motions that are refined by what came later.
   void WriteSurfaces();
+  SurfaceModels RefinedModels() const;
+  void ColorModels(SurfaceModels* models) const;
   void WriteFailure(const std::string& error);
 
   std::string ExpectedDepth() const;

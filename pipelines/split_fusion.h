@@ -53,6 +53,11 @@ class SplitFusion {
                         options_.split_scene ? segmenter_.get() : nullptr,
                         color_camera_);
   }
+  /// The same without detections.
+  PreparedFrame PrepareUnsplit(const Frame& frame) const {
+    return PrepareFrame(camera_, frame, options_.point_map, nullptr,
+                        color_camera_);
+  }
   /// The rest of it.
   FrameReport ProcessFrame(PreparedFrame prepared);
 

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/CholmodSupport>
-#include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -11,152 +10,12 @@
 #include <map>
 #include <vector>
 
+#include "splitfusion/lib/model/part_motions.h"
+
 namespace splitfusion {
 namespace {
 
 using Places = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-
-/// One part of a surface through the frames in which it is in use, in the
-/// world.
-struct PartMotions {
-  /// What is known of a node in a frame.
-  struct State {
-    Eigen::Vector3d place;     // Of its centre, metres.
-    Eigen::Matrix3d rotation;  // World from canonical.
-    bool hidden = false;       // Whether its motion is sought.
-  };
-
-  int frames() const { return static_cast<int>(states.size()); }
-  int nodes() const { return static_cast<int>(rest.size()); }
-
-  int first_node = 0;
-  std::vector<Eigen::Vector3d> rest;        // Places, canonical.
-  std::vector<std::vector<int>> neighbors;  // By their number in the part.
-  std::vector<int> indices;                 // Of the frames.
-  std::vector<std::vector<State>> states;   // By frame, then node.
-};
-
-/// Where the centre of a node is: that of a rigid surface amid its mesh.
-std::vector<Eigen::Vector3d> CentersOf(const SurfaceModel& model) {
-  std::vector<Eigen::Vector3d> centers = model.graph.positions;
-  if (!model.graph.rigid() || model.mesh.vertices.empty()) return centers;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& v : model.mesh.vertices) sum += v.cast<double>();
-  centers[0] = sum / static_cast<double>(model.mesh.vertices.size());
-  return centers;
-}
-
-/// Nodes and frames of a part.
-ModelPart PartAt(const DeformationGraph& graph, std::size_t index) {
-  return graph.parts.empty() ? ModelPart() : graph.parts[index];
-}
-
-/// Index of the node behind the last one of a part.
-int EndNode(const DeformationGraph& graph, std::size_t index) {
-  return index + 1 < graph.parts.size() ? graph.parts[index + 1].node
-                                        : graph.size();
-}
-
-PartMotions MotionsInWorld(const SurfaceModel& model, std::size_t index,
-                           const std::vector<Eigen::Vector3d>& centers,
-                           const std::map<int, Rigid3d>& world_from_camera) {
-  const DeformationGraph& graph = model.graph;
-  const ModelPart part = PartAt(graph, index);
-  PartMotions motions;
-  motions.first_node = part.node;
-  const int end = EndNode(graph, index);
-  for (int i = part.node; i < end; ++i) {
-    motions.rest.push_back(centers[i]);
-    motions.neighbors.push_back(graph.neighbors[i]);
-    for (int& j : motions.neighbors.back()) j -= part.node;
-  }
-  for (const FrameMotions& frame : model.history.frames) {
-    if (frame.frame < part.first_frame || frame.frame >= part.end_frame) {
-      continue;
-    }
-    const Rigid3d& pose = world_from_camera.at(frame.frame);
-    motions.indices.push_back(frame.frame);
-    auto& states = motions.states.emplace_back();
-    for (int i = part.node; i < end; ++i) {
-      const NodeMotion& motion = frame.motions[i];
-      states.push_back(
-          {pose * ApplyNode(graph.positions[i], motion, centers[i]),
-           pose.linear() * motion.rotation, !frame.Saw(i)});
-    }
-  }
-  return motions;
-}
-
-/// Before the first and after the last frame in which anything of the part was
-/// seen nothing is sought.
-void LeaveEndsAlone(PartMotions* motions) {
-  const auto sees = [](const std::vector<PartMotions::State>& states) {
-    return std::any_of(states.begin(), states.end(),
-                       [](const PartMotions::State& s) { return !s.hidden; });
-  };
-  const auto leave = [&](auto begin, auto end) {
-    for (auto frame = begin; frame != end; ++frame) {
-      if (sees(*frame)) return;
-      for (PartMotions::State& state : *frame) state.hidden = false;
-    }
-  };
-  // Of a part that was never seen the first pass leaves nothing to seek.
-  leave(motions->states.begin(), motions->states.end());
-  leave(motions->states.rbegin(), motions->states.rend());
-}
-
-/// Before its first and after its last sight a node stays where tracking had
-/// it, beside what was seen of the part; where nothing was, it goes with that.
-void LeaveOneSided(PartMotions* motions) {
-  std::vector<int> first(motions->nodes(), motions->frames());
-  std::vector<int> last(motions->nodes(), -1);
-  std::vector<char> sees(motions->frames(), false);
-  for (int f = 0; f < motions->frames(); ++f) {
-    for (int i = 0; i < motions->nodes(); ++i) {
-      if (motions->states[f][i].hidden) continue;
-      first[i] = std::min(first[i], f);
-      last[i] = f;
-      sees[f] = true;
-    }
-  }
-  for (int f = 0; f < motions->frames(); ++f) {
-    for (int i = 0; i < motions->nodes(); ++i) {
-      if (sees[f] != 0 && (f < first[i] || f > last[i])) {
-        motions->states[f][i].hidden = false;
-      }
-    }
-  }
-}
-
-/// Spreads the way and the turn with which a node comes into sight again over
-/// the frames in which it was hidden: where its motion begins to be sought, and
-/// where it is taken to be beyond a window.
-void SpreadReturns(PartMotions* motions) {
-  for (int i = 0; i < motions->nodes(); ++i) {
-    int last = -1;  // In which it was known.
-    for (int f = 0; f < motions->frames(); ++f) {
-      const PartMotions::State& now = motions->states[f][i];
-      if (now.hidden) continue;
-      if (last >= 0 && f > last + 1) {
-        const PartMotions::State& before = motions->states[f - 1][i];
-        const Eigen::Vector3d way = now.place - before.place;
-        const Eigen::AngleAxisd turn(now.rotation *
-                                     before.rotation.transpose());
-        const double span = motions->indices[f] - motions->indices[last];
-        for (int k = last + 1; k < f; ++k) {
-          const double share =
-              (motions->indices[k] - motions->indices[last]) / span;
-          PartMotions::State& state = motions->states[k][i];
-          state.place += share * way;
-          state.rotation =
-              Eigen::AngleAxisd(share * turn.angle(), turn.axis()) *
-              state.rotation;
-        }
-      }
-      last = f;
-    }
-  }
-}
 
 /// Weights of three places whose sum is the second difference in time, at the
 /// middle one; 1, -2, 1 of frames that follow one another.
@@ -435,32 +294,6 @@ std::vector<RefinedWindow> RefinePart(const HiddenMotionOptions& options,
   return windows;
 }
 
-/// Puts what was found into the history; the other nodes keep their bits.
-void Store(const PartMotions& motions,
-           const std::map<int, Rigid3d>& world_from_camera,
-           SurfaceModel* model) {
-  std::size_t f = 0;
-  for (FrameMotions& frame : model->history.frames) {
-    if (f == motions.indices.size() || frame.frame != motions.indices[f]) {
-      continue;
-    }
-    const Rigid3d camera_from_world =
-        world_from_camera.at(frame.frame).inverse();
-    for (int i = 0; i < motions.nodes(); ++i) {
-      const PartMotions::State& state = motions.states[f][i];
-      if (!state.hidden) continue;
-      const int node = motions.first_node + i;
-      const Eigen::Vector3d& g = model->graph.positions[node];
-      NodeMotion& motion = frame.motions[node];
-      motion.rotation =
-          Orthonormalized(camera_from_world.linear() * state.rotation);
-      motion.translation = camera_from_world * state.place - g -
-                           motion.rotation * (motions.rest[i] - g);
-    }
-    ++f;
-  }
-}
-
 }  // namespace
 
 void HiddenMotionOptions::List(OptionList* list) {
@@ -483,12 +316,9 @@ std::vector<RefinedWindow> RefineHiddenMotions(
   std::vector<std::vector<RefinedWindow>> windows(parts);
   tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t index) {
     PartMotions motions =
-        MotionsInWorld(*model, index, centers, world_from_camera);
-    LeaveEndsAlone(&motions);
-    LeaveOneSided(&motions);
-    SpreadReturns(&motions);
+        MotionsOfPart(*model, index, centers, world_from_camera);
     windows[index] = RefinePart(options, &motions);
-    Store(motions, world_from_camera, model);
+    StoreMotions(motions, world_from_camera, model);
   });
   std::vector<RefinedWindow> all;
   for (std::size_t index = 0; index < parts; ++index) {

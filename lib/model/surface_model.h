@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_MODEL_SURFACE_MODEL_H_
 #define SPLITFUSION_LIB_MODEL_SURFACE_MODEL_H_
 
+#include <map>
 #include <vector>
 
 #include "splitfusion/lib/deformation/deformation_graph.h"
@@ -22,6 +23,9 @@ struct SurfaceModel {
     (*archive)(mesh, graph, history);
   }
 };
+
+/// What is kept of every surface, by id.
+using SurfaceModels = std::map<int, SurfaceModel>;
 
 /// The part of a surface that some nodes carry: the triangles with a vertex
 /// whose nearest node is one of `nodes` (of every node whether it is), those

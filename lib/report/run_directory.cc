@@ -183,6 +183,7 @@ RunSummary RunDirectory::Summary() const {
   summary.versions = facts_.versions;
   summary.seconds_writing = seconds_writing_;
   summary.seconds_refining = seconds_refining_;
+  summary.seconds_coloring = seconds_coloring_;
   summary.cpu_seconds_per_frame = CpuSeconds() / std::max(1, summary.frames);
   summary.peak_memory_bytes = PeakMemoryBytes();
   return summary;

@@ -70,6 +70,9 @@ class RunDirectory {
   /// Counts time to `seconds_refining`, at the end of a run.
   void AddRefiningSeconds(double seconds) { seconds_refining_ += seconds; }
 
+  /// Counts time to `seconds_coloring`, likewise.
+  void AddColoringSeconds(double seconds) { seconds_coloring_ += seconds; }
+
   /// States what was written of a surface at the end.
   void SetWritten(int id, const WrittenSurface& written) {
     builder_.SetWritten(id, written);
@@ -94,6 +97,7 @@ class RunDirectory {
   SummaryBuilder builder_;
   double seconds_writing_ = 0;
   double seconds_refining_ = 0;
+  double seconds_coloring_ = 0;
   double cpu_seconds_before_ = 0;
   std::ofstream frames_;
   std::ofstream iterations_;

@@ -78,7 +78,8 @@ Json SecondsPerFrame(const RunSummary& summary) {
 /// Wall time of everything by frame.
 double SecondsOfAllPasses(const RunSummary& summary) {
   return summary.mean_seconds +
-         (summary.seconds_refining + summary.seconds_writing) /
+         (summary.seconds_refining + summary.seconds_coloring +
+          summary.seconds_writing) /
              std::max(1, summary.frames);
 }
 
@@ -125,6 +126,7 @@ Json ToJson(const RunSummary& summary) {
           {"seconds_per_frame", SecondsPerFrame(summary)},
           {"seconds_writing", summary.seconds_writing},
           {"seconds_refining", summary.seconds_refining},
+          {"seconds_coloring", summary.seconds_coloring},
           {"seconds_per_frame_all_passes", SecondsOfAllPasses(summary)},
           {"cpu_seconds_per_frame", summary.cpu_seconds_per_frame},
           {"peak_memory_bytes", summary.peak_memory_bytes},

@@ -74,6 +74,7 @@ struct RunSummary {
   std::array<double, kFrameParts.size()> part_seconds{};
   double seconds_writing = 0;            ///< Of the whole run.
   double seconds_refining = 0;           ///< At the end of the run.
+  double seconds_coloring = 0;           ///< At the end of the run.
   double cpu_seconds_per_frame = 0;      ///< Of all threads, mean.
   std::int64_t peak_memory_bytes = 0;    ///< Largest resident size.
   std::vector<SurfaceSummary> surfaces;  ///< By id.

@@ -85,6 +85,7 @@ TEST_F(SfRefine, FindsHiddenMotionsOfAFinishedRun) {
   EXPECT_NEAR(summary["seconds_per_frame_all_passes"].get<double>(),
               summary["seconds_per_frame"]["mean"].get<double>() +
                   (summary["seconds_refining"].get<double>() +
+                   summary["seconds_coloring"].get<double>() +
                    summary["seconds_writing"].get<double>()) /
                       12,
               1e-9);

@@ -1,0 +1,26 @@
+#ifndef SPLITFUSION_PIPELINES_COLOR_PASS_H_
+#define SPLITFUSION_PIPELINES_COLOR_PASS_H_
+
+#include <string>
+
+#include "splitfusion/lib/model/surface_model.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
+#include "splitfusion/pipelines/split_fusion.h"
+
+namespace splitfusion {
+
+/// A pass over the first `frames` frames that `reader` gives, once their
+/// motions are known: colours the vertices of all models from the frames that
+/// show them best, see BestViewColors. `reads_ahead`: the next frame is read in
+/// a thread of its own.
+///
+/// `models`: those of `fusion`, with their final motions.
+/// @return empty, or a line on the first frame that cannot be read any more;
+///     the colours are then from the others.
+std::string ColorFromBestViews(const ImageFolderReader& reader, int frames,
+                               const SplitFusion& fusion, bool reads_ahead,
+                               SurfaceModels* models);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_PIPELINES_COLOR_PASS_H_

@@ -1,0 +1,189 @@
+#include "splitfusion/lib/render/best_view_colors.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "splitfusion/lib/base/pi.h"
+#include "support/sample_depth.h"
+#include "support/sample_graphs.h"
+#include "support/sample_meshes.h"
+
+namespace splitfusion {
+namespace {
+
+using Color = std::array<std::uint8_t, 3>;
+
+constexpr Color kFused = {10, 20, 30};
+const cv::Vec3b kBlue(255, 0, 0);
+const cv::Vec3b kGreen(0, 255, 0);
+
+/// A plate of 30 by 20 cm amid the view at 1 m.
+SurfaceModel Plate() {
+  SurfaceModel model;
+  model.mesh = PlateMesh(0.3, 0.2, 0.025, 1);
+  for (Eigen::Vector3f& v : model.mesh.vertices) {
+    v -= Eigen::Vector3f(0.15f, 0.1f, 0);
+  }
+  model.mesh.normals = ComputeVertexNormals(model.mesh);
+  model.mesh.colors.assign(model.mesh.vertices.size(), kFused);
+  model.graph = CoverWithNodes(model.mesh, 0.05);
+  return model;
+}
+
+/// Moves the plate in a frame, in which all of it is seen.
+void AddFrame(int frame, const Rigid3d& motion, SurfaceModel* model) {
+  DeformationGraph graph = model->graph;
+  ApplyRigidMotion(motion, &graph);
+  model->history.frames.push_back(
+      {frame, true, graph.motions, std::vector<char>(graph.size(), true)});
+}
+
+/// What the camera sees of the plate in a frame, before a wall, all in one
+/// colour.
+LiveView See(const SurfaceModel& model, std::size_t index,
+             const cv::Vec3b& bgr) {
+  DeformationGraph graph = model.graph;
+  graph.motions = model.history.frames[index].motions;
+  const WarpField warp(graph);
+  const SkinningIndex skinning(graph, 4);
+  TriangleMesh mesh = model.mesh;
+  for (Eigen::Vector3f& v : mesh.vertices) {
+    v = warp.WarpPoint(skinning.Skin(v), v);
+  }
+  const PinholeCamera camera = SmallCamera();
+  cv::Mat_<float> depth = MeshDepth(camera, mesh);
+  depth.setTo(3, depth == 0);
+  return MakeLiveView(camera, depth, PlainColor(camera, bgr));
+}
+
+/// Index of the vertex nearest to the middle.
+std::size_t Middle(const SurfaceModel& model) {
+  const auto& vertices = model.mesh.vertices;
+  return std::min_element(
+             vertices.begin(), vertices.end(),
+             [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+               return a.head<2>().norm() < b.head<2>().norm();
+             }) -
+         vertices.begin();
+}
+
+/// Colour of the middle after frames of these colours.
+Color ColorOf(const SurfaceModel& model, const std::vector<cv::Vec3b>& bgr) {
+  BestViewColors colors(model, 4);
+  for (std::size_t f = 0; f < bgr.size(); ++f) {
+    colors.Add(model.history.frames[f].frame, See(model, f, bgr[f]));
+  }
+  return colors.Colors()[Middle(model)];
+}
+
+Rigid3d Away(double metres) { return MakeMotion({0, 0, 0}, {0, 0, metres}); }
+
+/// Turned about the vertical axis through its middle.
+Rigid3d Turned(double degrees) {
+  const Rigid3d to_middle = Away(-1);
+  return to_middle.inverse() *
+         MakeMotion({0, degrees * kPi<double> / 180, 0}, {0, 0, 0}) * to_middle;
+}
+
+TEST(BestViewColors, AreThoseOfTheOneViewThatShowsIt) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  EXPECT_EQ(ColorOf(model, {kGreen}), (Color{0, 255, 0}));
+}
+
+TEST(BestViewColors, WeighPixelsPerArea) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  // Its middle does not move in the image, as it goes away along the axis.
+  AddFrame(1, Away(0.5), &model);
+  const Color color = ColorOf(model, {kGreen, kBlue});
+  const double share = 1 / (1.5 * 1.5);
+  EXPECT_NEAR(color[2], 255 * share / (1 + share), 6);
+  EXPECT_NEAR(color[1], 255 / (1 + share), 6);
+}
+
+TEST(BestViewColors, ViewsFromTheSideCountLess) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Turned(60), &model);
+  AddFrame(1, Turned(0), &model);
+  const Color color = ColorOf(model, {kBlue, kGreen});
+  // A third, less what its depth is off within its pixel.
+  EXPECT_LT(color[2], 255 / 3 + 6);
+  EXPECT_GT(color[2], 25);
+}
+
+TEST(BestViewColors, WhatMovesInTheImageIsBlurred) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  // By 5 cm, in pixels.
+  const double way = SmallCamera().fx * 0.05;
+  AddFrame(1, MakeMotion({0, 0, 0}, {0.05, 0, 0}), &model);
+  const double share = 1 / (1 + way / 2);
+  EXPECT_NEAR(ColorOf(model, {kGreen, kBlue})[2], 255 * share / (1 + share), 6);
+  // The same way in five frames.
+  model.history.frames[1].frame = 5;
+  const double slow = 1 / (1 + way / 10);
+  EXPECT_NEAR(ColorOf(model, {kGreen, kBlue})[2], 255 * slow / (1 + slow), 6);
+}
+
+TEST(BestViewColors, WhatLiesBesideLiveDepthIsNotSeen) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  BestViewColors colors(model, 4);
+  const PinholeCamera camera = SmallCamera();
+  for (const double z : {0.9, 1.1}) {
+    colors.Add(0, MakeLiveView(camera, WallDepth(camera, z),
+                               PlainColor(camera, kGreen)));
+  }
+  EXPECT_EQ(colors.Colors(), model.mesh.colors);
+}
+
+TEST(BestViewColors, NorAreHiddenNodesAndLostFrames) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  std::vector<char>& seen = model.history.frames[0].seen;
+  std::fill(seen.begin(), seen.end(), false);
+  EXPECT_EQ(ColorOf(model, {kGreen}), kFused);
+  // Of a frame that it has no motions of.
+  BestViewColors colors(model, 4);
+  colors.Add(7, See(model, 0, kGreen));
+  EXPECT_EQ(colors.Colors(), model.mesh.colors);
+}
+
+TEST(BestViewColors, BesideADepthEdgeIsTheColorOfSomethingElse) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  BestViewColors colors(model, 4);
+  colors.Add(0, See(model, 0, kGreen));
+  const auto found = colors.Colors();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const float rim = std::min(0.15f - std::abs(model.mesh.vertices[i].x()),
+                               0.10f - std::abs(model.mesh.vertices[i].y()));
+    if (rim < 0.005f || rim > 0.04f) {
+      EXPECT_EQ(found[i], rim < 0.005f ? kFused : (Color{0, 255, 0})) << rim;
+    }
+  }
+}
+
+TEST(BestViewColors, DoNotDependOnTheNumberOfThreads) {
+  SurfaceModel model = Plate();
+  std::vector<std::vector<Color>> found;
+  for (int f = 0; f < 5; ++f) AddFrame(f, Turned(10 * f), &model);
+  for (const int threads : {1, 4}) {
+    const tbb::global_control limit(
+        tbb::global_control::max_allowed_parallelism, threads);
+    BestViewColors colors(model, 4);
+    for (int f = 0; f < 5; ++f) {
+      colors.Add(f, See(model, f, cv::Vec3b(40 * f, 200 - 40 * f, 99)));
+    }
+    found.push_back(colors.Colors());
+  }
+  EXPECT_EQ(found[0], found[1]);
+}
+
+}  // namespace
+}  // namespace splitfusion
