@@ -46,6 +46,9 @@ void PipelineOptions::List(OptionList* list) {
                "A surface that was lost or hidden is found only if its paired "
                "model points are this share of its live pixels (edges apart); "
                "0 = not asked.");
+  list->Switch("last_sights", &last_sights,
+               "A surface that was lost or hidden is looked for by features of "
+               "its last sight in plain view, too.");
   list->Number(
       "own_motion_gain", &own_motion_gain, {0, kNoiseSigmas * kNoiseSigmas},
       "variances of the noise",

@@ -73,6 +73,8 @@ struct PipelineOptions {
   /// its model points lie on it as this share of those that are certain, at the
   /// same stride: a sliver fits anywhere; 0 = not asked.
   double min_coverage = 0.25;
+  /// Whether a surface that is looked for is known by its texture, too.
+  bool last_sights = true;
   /// A detection of a rigid class moves if a motion of its own lowers the
   /// squared distance between the mapped background and its depth by so many
   /// variances of the noise, for the mean point; 0 = not looked for.

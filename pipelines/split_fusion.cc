@@ -255,7 +255,7 @@ std::vector<Rigid3d> SplitFusion::WaysToWhereSeen(const Surface& surface,
   const auto add = [&](const std::optional<Rigid3d>& way) {
     if (way) ways.push_back(*way);
   };
-  add(tracker_->MotionSinceSight(surface, live_));
+  if (options_.last_sights) add(tracker_->MotionSinceSight(surface, live_));
   const double deviation = options_.split.assignment.PlaceDeviation(
       predictors_.at(surface.id()).frames_since() + 1);
   const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
@@ -344,6 +344,7 @@ bool SplitFusion::InPlainView(const SurfaceReport& report) const {
 }
 
 void SplitFusion::KeepSights(const FrameReport& report) {
+  if (!options_.last_sights) return;
   for (const SurfaceReport& object : report.surfaces) {
     if (object.id != 0 && object.state == TrackState::kTracked &&
         InPlainView(object)) {
