@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_PIPELINES_COLOR_PASS_H_
 #define SPLITFUSION_PIPELINES_COLOR_PASS_H_
 
+#include <functional>
 #include <string>
 
 #include "splitfusion/lib/model/surface_model.h"
@@ -11,14 +12,15 @@ namespace splitfusion {
 
 /// A pass over the first `frames` frames that `reader` gives, once their
 /// motions are known: colours the vertices of all models from the frames that
-/// show them best, see BestViewColors. `reads_ahead`: the next frame is read in
-/// a thread of its own.
+/// show them well, see BestViewColors. `reads_ahead`: the next frame is read in
+/// a thread of its own. `shown`: called with the number of frames so far.
 ///
 /// `models`: those of `fusion`, with their final motions.
-/// @return empty, or a line on the first frame that cannot be read any more;
-///     the colours are then from the others.
+/// @return empty, or a line on frames that cannot be read any more; the colours
+///     are then from the others.
 std::string ColorFromBestViews(const ImageFolderReader& reader, int frames,
                                const SplitFusion& fusion, bool reads_ahead,
+                               const std::function<void(int)>& shown,
                                SurfaceModels* models);
 
 }  // namespace splitfusion

@@ -1,9 +1,11 @@
 #include "splitfusion/pipelines/sequence_run.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -150,6 +152,12 @@ void SequenceRun::StartFromOther() {
   ReadArchiveFile(RunPaths(options_.from.run).KeptCheckpoint(options_.from.at),
                   kCheckpointVersion,
                   [&](ArchiveReader* archive) { SerializeState(archive); });
+  if (done_ >= work_->reader.size()) {
+    throw InputError(options_.from.run + ": its state is that after " +
+                     std::to_string(done_) +
+                     " frames of this run: expected one before the last of " +
+                     std::to_string(work_->reader.size()));
+  }
   work_->reader.SkipTo(done_);
 }
 
@@ -299,6 +307,12 @@ void SequenceRun::ShowProgress() const {
   hooks_.shown(progress);
 }
 
+void SequenceRun::ShowPass(RunPass pass, int done, int total) const {
+  if (!hooks_.shown) return;
+  hooks_.shown(
+      {pass, done, total, static_cast<int>(work_->fusion.surfaces().size())});
+}
+
 /// @throw InputError if there was nothing to reconstruct.
 void SequenceRun::CheckReconstructed() const {
   if (!work_->fusion.surfaces().empty()) return;
@@ -320,7 +334,7 @@ void SequenceRun::WriteEnd() {
 
 void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
   folder_.CheckHeld();
-  WriteSurfaces();
+  WriteSurfaces(status == RunStatus::kComplete);
   directory_->Finish({status, error, folder_.marker().resumed_at,
                       SkippedFrames(work_->reader)});
   WarnOfSkippedFrames();
@@ -328,53 +342,69 @@ void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
   where_ = published ? folder_.root() : folder_.unfinished().root();
 }
 
-void SequenceRun::WriteSurfaces() {
-  frames_.reset();  // It may be reading ahead.
+/// `all_frames`: the passes over all of them are made, too. They are not where
+/// a run stops before its end: it goes on later, or has to stop soon.
+void SequenceRun::WriteSurfaces(bool all_frames) {
+  frames_.reset();  // What reads ahead may change what the reader gives.
   Stopwatch stopwatch;
   const SplitFusion& fusion = work_->fusion;
   work_->fusion.Finish();
+  SurfaceModels models = Models();
+  std::error_code ignored;  // That of an end before this one.
+  std::filesystem::remove(directory_->paths().Refinement(), ignored);
   directory_->AddWritingSeconds(stopwatch.Restart());
-  SurfaceModels models = RefinedModels();
+  if (all_frames && fusion.options().hidden.refine) RefineModels(&models);
   directory_->AddRefiningSeconds(stopwatch.Restart());
-  ColorModels(&models);
+  if (all_frames && fusion.options().best_view_colors) ColorModels(&models);
   directory_->AddColoringSeconds(stopwatch.Restart());
   for (const auto& [id, surface] : fusion.surfaces()) {
-    const StretchedArea stretch = WriteSurface(directory_->paths(), *surface,
-                                               models.at(id), options_.warped);
+    const SurfaceModel& model = models.at(id);
+    const StretchedArea stretch =
+        WriteSurface(directory_->paths(), *surface, model, options_.warped);
     directory_->SetWritten(
-        id, {surface->graph().size(),
-             static_cast<int>(surface->mesh().vertices.size()), stretch});
+        id, {model.graph.size(), static_cast<int>(model.mesh.vertices.size()),
+             stretch});
   }
   directory_->AddWritingSeconds(stopwatch.Restart());
 }
 
-/// With the motions of what was hidden; writes refinement.jsonl.
-SurfaceModels SequenceRun::RefinedModels() const {
-  const SplitFusion& fusion = work_->fusion;
-  const std::map<int, Rigid3d> poses = fusion.PosesByFrame();
-  const HiddenMotionOptions& hidden = fusion.options().hidden;
+SurfaceModels SequenceRun::Models() const {
   SurfaceModels models;
-  std::string refined;
-  for (const auto& [id, surface] : fusion.surfaces()) {
-    SurfaceModel& model = models[id] = surface->Model();
-    if (hidden.refine && !surface->is_ray_cast()) {
-      refined +=
-          RefinementLines(id, RefineHiddenMotions(poses, hidden, &model));
-    }
-  }
-  if (hidden.refine) {
-    WriteFileAtomically(directory_->paths().Refinement(),
-                        [&](std::ostream& out) { out << refined; });
+  for (const auto& [id, surface] : work_->fusion.surfaces()) {
+    models[id] = surface->Model();
   }
   return models;
 }
 
-/// From the frames that show them best.
+/// Finds the motions of what was hidden, and reports on them.
+void SequenceRun::RefineModels(SurfaceModels* models) const {
+  const SplitFusion& fusion = work_->fusion;
+  const std::map<int, Rigid3d> poses = fusion.PosesByFrame();
+  std::string lines;
+  int done = 0;
+  for (auto& [id, model] : *models) {
+    if (!fusion.surfaces().at(id)->is_ray_cast()) {
+      lines += RefinementLines(
+          id, RefineHiddenMotions(poses, fusion.options().hidden, &model));
+    }
+    ShowPass(RunPass::kRefining, ++done, static_cast<int>(models->size()));
+  }
+  WriteFileAtomically(directory_->paths().Refinement(),
+                      [&](std::ostream& out) { out << lines; });
+}
+
+/// Colours vertices from the frames that show them well. What was tracked is
+/// not lost for a trouble with colours.
 void SequenceRun::ColorModels(SurfaceModels* models) const {
-  if (!work_->fusion.options().best_view_colors) return;
-  const std::string trouble = ColorFromBestViews(
-      work_->reader, done_, work_->fusion, options_.reads_ahead, models);
-  if (!trouble.empty()) Warn(trouble);
+  try {
+    const std::string trouble = ColorFromBestViews(
+        work_->reader, done_, work_->fusion, options_.reads_ahead,
+        [this](int done) { ShowPass(RunPass::kColoring, done, done_); },
+        models);
+    if (!trouble.empty()) Warn(trouble);
+  } catch (const std::exception& error) {
+    Warn(std::string("vertices keep the colours of fusion: ") + error.what());
+  }
 }
 
 /// Of a run that an error ended; a second error, as on a full disk, leaves

@@ -45,12 +45,20 @@ struct SequenceRunOptions {
   std::shared_ptr<SolutionRecorder> solutions;
 };
 
+/// What a run does with its frames, one pass after the other.
+enum class RunPass {
+  kTracking,  ///< Tracks and fuses them.
+  kRefining,  ///< Finds hidden motions, surface by surface.
+  kColoring,  ///< Colours vertices from them.
+};
+
 /// How far a run is.
 struct RunProgress {
-  int done = 0;             ///< Frames.
-  int total = 0;            ///< Frames.
-  int surfaces = 0;         ///< So far.
-  double seconds_left = 0;  ///< At the pace so far.
+  RunPass pass = RunPass::kTracking;  ///< The one in hand.
+  int done = 0;                       ///< Frames, or surfaces (kRefining).
+  int total = 0;                      ///< Likewise.
+  int surfaces = 0;                   ///< So far.
+  double seconds_left = 0;  ///< Of tracking, at the pace so far; else 0.
 };
 
 /// What a run tells its caller; all may be empty.
@@ -130,13 +138,16 @@ class SequenceRun {
   void WriteProblems(int index);
   void WriteUncertainties(FrameReport* report) const;
   void ShowProgress() const;
+  void ShowPass(RunPass pass, int done, int total) const;
 
   void CheckReconstructed() const;
   void WriteEnd();
   void WriteResults(RunStatus status, const std::string& error = "");
-  /// All surfaces, with motions that are refined by what came later.
-  void WriteSurfaces();
-  SurfaceModels RefinedModels() const;
+  /// All surfaces; `all_frames`: with hidden motions and colours that take
+  /// passes over all of them.
+  void WriteSurfaces(bool all_frames);
+  SurfaceModels Models() const;
+  void RefineModels(SurfaceModels* models) const;
   void ColorModels(SurfaceModels* models) const;
   void WriteFailure(const std::string& error);
 

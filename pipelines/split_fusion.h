@@ -53,7 +53,7 @@ class SplitFusion {
                         options_.split_scene ? segmenter_.get() : nullptr,
                         color_camera_);
   }
-  /// The same without detections.
+  /// The same without detections, for a pass over frames that are done.
   PreparedFrame PrepareUnsplit(const Frame& frame) const {
     return PrepareFrame(camera_, frame, options_.point_map, nullptr,
                         color_camera_);

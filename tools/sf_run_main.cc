@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -126,9 +127,14 @@ SequenceRunHooks Hooks(ProgressLine* progress) {
   };
   hooks.tell = [](const std::string& line) { LOG(INFO) << line; };
   hooks.shown = [progress](const RunProgress& run) {
-    progress->Show(run.done, run.total,
-                   "frames, " + std::to_string(run.surfaces) + " surfaces",
-                   run.seconds_left);
+    static const std::map<RunPass, std::string> kDone = {
+        {RunPass::kTracking, "frames, "},
+        {RunPass::kRefining, "refined, "},
+        {RunPass::kColoring, "frames seen for colours, "}};
+    progress->Show(
+        run.done, run.total,
+        kDone.at(run.pass) + std::to_string(run.surfaces) + " surfaces",
+        run.seconds_left);
   };
   return hooks;
 }

@@ -9,21 +9,28 @@
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/geometry/depth_comparison.h"
+#include "splitfusion/lib/visibility/seen_triangles.h"
 
 namespace splitfusion {
 namespace {
 
-/// Colour between the pixels, BGR.
-cv::Vec3f Interpolated(const cv::Mat& color, const Eigen::Vector2f& place) {
-  const int u = std::clamp(static_cast<int>(place.x()), 0, color.cols - 2);
-  const int v = std::clamp(static_cast<int>(place.y()), 0, color.rows - 2);
-  const float a = std::clamp(place.x() - static_cast<float>(u), 0.0f, 1.0f);
-  const float b = std::clamp(place.y() - static_cast<float>(v), 0.0f, 1.0f);
+/// Vertices that one task looks at.
+constexpr int kGrain = 1024;  // Speed.
+
+/// BGR between the pixels.
+cv::Vec3f ColorBetweenPixels(const cv::Mat& color,
+                             const Eigen::Vector2f& place) {
+  const float x = std::clamp(place.x(), 0.0f, color.cols - 1.0f);
+  const float y = std::clamp(place.y(), 0.0f, color.rows - 1.0f);
+  const int u = static_cast<int>(x), v = static_cast<int>(y);
+  const int right = std::min(u + 1, color.cols - 1);
+  const int below = std::min(v + 1, color.rows - 1);
+  const float a = x - static_cast<float>(u), b = y - static_cast<float>(v);
   const auto at = [&](int row, int column) {
     return cv::Vec3f(color.at<cv::Vec3b>(row, column));
   };
-  return (1 - b) * ((1 - a) * at(v, u) + a * at(v, u + 1)) +
-         b * ((1 - a) * at(v + 1, u) + a * at(v + 1, u + 1));
+  return (1 - b) * ((1 - a) * at(v, u) + a * at(v, right)) +
+         b * ((1 - a) * at(below, u) + a * at(below, right));
 }
 
 /// How well a frame shows a point of the surface, see BestViewColors; 0: not at
@@ -58,50 +65,86 @@ int StrongestNode(const Skinning& skinning) {
       .nodes[std::max_element(begin, begin + skinning.count) - begin];
 }
 
-}  // namespace
+/// That of vertices; one for all of a rigid surface.
+std::vector<Skinning> SkinningOfAll(const SurfaceModel& model,
+                                    int neighbors_per_point) {
+  const SkinningIndex index(model.graph, neighbors_per_point);
+  if (!model.graph.rigid()) return index.Skin(model.mesh.vertices);
+  return {index.Skin(Eigen::Vector3f::Zero().eval())};
+}
 
-BestViewColors::BestViewColors(const SurfaceModel& model,
-                               int neighbors_per_point)
-    : model_(model),
-      skinning_(SkinningIndex(model.graph, neighbors_per_point)
-                    .Skin(model.mesh.vertices)),
-      vertices_(model.mesh.vertices.size()) {}
-
-void BestViewColors::Add(int frame, const LiveView& live) {
-  const FrameMotions* motions = model_.history.Find(frame);
-  if (motions == nullptr) return;
-  DeformationGraph graph = model_.graph;
-  graph.motions = motions->motions;
-  const WarpField warp(graph);
-  // Since the frame before, frames.
-  const auto passed =
-      static_cast<float>(last_frame_ < 0 ? 0 : frame - last_frame_);
-  const auto add = [&](std::size_t i) {
-    Vertex& vertex = vertices_[i];
-    const Eigen::Vector3f point =
-        warp.WarpPoint(skinning_[i], model_.mesh.vertices[i]);
-    const auto pixel = live.camera.PixelOf(point);
-    const Eigen::Vector2f before = vertex.pixel;
-    vertex.pixel = pixel ? live.camera.Project(point) : Nowhere();
-    if (!pixel || !motions->Saw(StrongestNode(skinning_[i]))) return;
-    const float way =
-        passed > 0 ? (vertex.pixel - before).norm() / passed : 0.0f;
-    const float quality = QualityOf(
-        live, point, warp.WarpNormal(skinning_[i], model_.mesh.normals[i]),
-        *pixel, way);
-    if (!(quality > 0)) return;  // Nor if it was not in the image before.
-    const cv::Vec3f bgr = Interpolated(live.color, vertex.pixel);
-    vertex.sum += quality * Eigen::Vector3f(bgr[2], bgr[1], bgr[0]);
-    vertex.weight += quality;
-  };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices_.size(), 1024),
+/// Calls visit(i) for the vertices of a mesh, in parallel.
+template <typename Visit>
+void ForEachVertex(std::size_t count, const Visit& visit) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i < range.end();
                            ++i) {
-                        add(i);
+                        visit(i);
                       }
                     });
-  last_frame_ = frame;
+}
+
+}  // namespace
+
+BestViewColors::BestViewColors(int surface, const SurfaceModel& model,
+                               int neighbors_per_point)
+    : surface_(surface),
+      model_(model),
+      skinning_(SkinningOfAll(model, neighbors_per_point)),
+      vertices_(model.mesh.vertices.size()),
+      graph_(model.graph),
+      placed_(model.mesh.vertices.size()) {}
+
+void BestViewColors::Place(int frame) {
+  motions_ = model_.history.Find(frame);
+  if (motions_ == nullptr) return;
+  graph_.motions = motions_->motions;
+  const WarpField warp(graph_);
+  ForEachVertex(placed_.size(), [&](std::size_t i) {
+    placed_[i] = warp.WarpPoint(SkinningOf(i), model_.mesh.vertices[i]);
+  });
+}
+
+int BestViewColors::Draw(const PinholeCamera& camera, int first,
+                         Raster* raster) const {
+  if (motions_ == nullptr) return 0;
+  const std::vector<Eigen::Vector3i> triangles =
+      graph_.rigid()
+          ? model_.mesh.triangles
+          : SeenTriangles(model_.mesh, skinning_, graph_, motions_->frame);
+  RasterizeTriangles(placed_, triangles, camera, /*cull_back_faces=*/true,
+                     first, raster);
+  return static_cast<int>(triangles.size());
+}
+
+void BestViewColors::Add(const LiveView& live) {
+  if (motions_ == nullptr) return;
+  const WarpField warp(graph_);
+  // Since the frame before, frames.
+  const auto passed =
+      static_cast<float>(last_frame_ < 0 ? 0 : motions_->frame - last_frame_);
+  ForEachVertex(vertices_.size(), [&](std::size_t i) {
+    Vertex& vertex = vertices_[i];
+    const Eigen::Vector3f& point = placed_[i];
+    const auto pixel = live.camera.PixelOf(point);
+    const Eigen::Vector2f before = vertex.pixel;
+    vertex.pixel = pixel ? live.camera.Project(point) : Nowhere();
+    if (!pixel || live.labels(pixel->y(), pixel->x()) != surface_ ||
+        !motions_->Saw(StrongestNode(SkinningOf(i)))) {
+      return;
+    }
+    const float way =
+        passed > 0 ? (vertex.pixel - before).norm() / passed : 0.0f;
+    const float quality = QualityOf(
+        live, point, warp.WarpNormal(SkinningOf(i), model_.mesh.normals[i]),
+        *pixel, way);
+    if (!(quality > 0)) return;  // Nor if it was not in the image before.
+    const cv::Vec3f bgr = ColorBetweenPixels(live.color, vertex.pixel);
+    vertex.sum += quality * Eigen::Vector3f(bgr[2], bgr[1], bgr[0]);
+    vertex.weight += quality;
+  });
+  last_frame_ = motions_->frame;
 }
 
 std::vector<std::array<std::uint8_t, 3>> BestViewColors::Colors() const {

@@ -8,34 +8,49 @@
 
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/model/surface_model.h"
+#include "splitfusion/lib/render/rasterizer.h"
 
 namespace splitfusion {
 
 /// Colours of a surface's vertices from the frames that show them well, once
 /// their motions are known. Fusion averages colours in voxels, under the
-/// motions that a frame had when it came in: two pairs of eyes. Here every
-/// frame counts for a vertex by how well it shows it, the product of
+/// motions that a frame had when it came in, so that an eye may be there twice.
+/// Here every frame counts for a vertex by how well it shows it, the product of
 ///
 ///   - pixels per area of the surface, cos(angle) / z^2,
 ///   - sharpness, 1 / (1 + s / 2): s is the vertex' way in the image since the
-///     frame before, pixels, for half of which the shutter is taken to be open,
+///     frame before, pixels, for half of which the shutter is taken to be open;
+///     1 in the surface's first frame,
 ///   - fit, exp(-(d / sigma)^2 / 2) of its distance d from the live depth,
 ///     across the surface, with that depth's noise sigma.
 ///
-/// A frame shows a vertex if its nearest node was seen in it
-/// (FrameMotions::seen), it faces the camera and lies on live depth, not beside
-/// an edge. To favour the best views more than that, by powers of the product,
-/// gains no sharpness, and they agree less with the others (docs/ablation.md).
+/// A frame shows a vertex that was in the image in the frame before, too, if
+/// its nearest node was seen (FrameMotions::seen), it faces the camera and lies
+/// on live depth where its own surface is the one in view, not beside an edge.
+/// To favour the best views more than that, by powers of the product, gains no
+/// sharpness, and the colours agree less with the images (docs/ablation.md).
 /// Not in the paper; compare Maier et al. 2015, Waechter et al. 2014.
+///
+/// In every frame, in order of time: Place(), Draw() if it may hide others,
+/// Add().
 class BestViewColors {
  public:
-  /// Of the vertices of `model`, which must outlive this and has its final
-  /// motions; `neighbors_per_point`: K of Eq. 3.
-  BestViewColors(const SurfaceModel& model, int neighbors_per_point);
+  /// Of the vertices of the surface with this id; `model` has normals and at
+  /// least one node, must outlive this and has its final motions.
+  /// `neighbors_per_point`: K of Eq. 3.
+  BestViewColors(int surface, const SurfaceModel& model,
+                 int neighbors_per_point);
 
-  /// The frames in order; one of which the surface has no motion changes
-  /// nothing. Needs camera, depth, edges and colour of `live`.
-  void Add(int frame, const LiveView& live);
+  /// Carries the vertices into a frame.
+  void Place(int frame);
+
+  /// Draws what had been seen of the surface by then; its triangles are counted
+  /// from `first` on. Returns their number.
+  int Draw(const PinholeCamera& camera, int first, Raster* raster) const;
+
+  /// Takes colours from a frame of which the surface has motions. Needs camera,
+  /// depth, edges, colour and, by pixel, the surface in view, `labels`.
+  void Add(const LiveView& live);
 
   /// Red, green, blue by vertex; those that no frame showed keep theirs.
   std::vector<std::array<std::uint8_t, 3>> Colors() const;
@@ -48,10 +63,19 @@ class BestViewColors {
     Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // In the last frame.
   };
 
+  /// A rigid surface has one for all.
+  const Skinning& SkinningOf(std::size_t vertex) const {
+    return skinning_[skinning_.size() == 1 ? 0 : vertex];
+  }
+
+  int surface_;
   const SurfaceModel& model_;
   std::vector<Skinning> skinning_;
   std::vector<Vertex> vertices_;
-  int last_frame_ = -1;  // Of Vertex::pixel; -1: none.
+  const FrameMotions* motions_ = nullptr;  // Of the frame in hand.
+  DeformationGraph graph_;                 // With these.
+  std::vector<Eigen::Vector3f> placed_;    // Camera frame, metres.
+  int last_frame_ = -1;                    // Of Vertex::pixel; -1: none.
 };
 
 }  // namespace splitfusion

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "splitfusion/lib/synthetic/synthetic_writer.h"
 #include "support/expect_input_error.h"
 #include "support/synthetic_run.h"
@@ -49,20 +52,51 @@ class SequenceRunTest : public ::testing::Test {
 };
 
 TEST_F(SequenceRunTest, TellsHowFarItIsAndLeavesAWholeRun) {
-  std::vector<int> done;
+  std::map<RunPass, std::vector<int>> done;
   SequenceRunHooks hooks;
   hooks.shown = [&](const RunProgress& progress) {
-    EXPECT_EQ(progress.total, kFrames);
+    EXPECT_EQ(progress.total, progress.pass == RunPass::kRefining
+                                  ? progress.surfaces
+                                  : kFrames);
     EXPECT_GE(progress.seconds_left, 0);
-    done.push_back(progress.done);
+    done[progress.pass].push_back(progress.done);
   };
   EXPECT_EQ(Execute(hooks).frames, kFrames);
-  EXPECT_EQ(done, (std::vector<int>{1, 2, 3, 4}));
+  EXPECT_EQ(done[RunPass::kTracking], (std::vector<int>{1, 2, 3, 4}));
+  EXPECT_EQ(done[RunPass::kRefining].front(), 1);
+  EXPECT_EQ(done[RunPass::kColoring], (std::vector<int>{1, 2, 3, 4}));
   const auto marker = ReadRunMarker(root());
   ASSERT_TRUE(marker);
   EXPECT_EQ(marker->status, RunStatus::kComplete);
   EXPECT_EQ(marker->files.count("trajectory.txt"), 1u);
   EXPECT_FALSE(std::filesystem::exists(unfinished()));
+}
+
+TEST_F(SequenceRunTest, ImagesThatAreGoneAtTheEndGiveNoColors) {
+  ASSERT_EQ(Execute({}).frames, kFrames);
+  const TriangleMesh colored =
+      ReadPly(root() + "/surfaces/000_background/mesh.ply");
+  std::filesystem::remove_all(root());
+  SequenceRunHooks hooks;
+  std::vector<std::string> warnings;
+  hooks.warn = [&](const std::string& line) { warnings.push_back(line); };
+  hooks.shown = [&](const RunProgress& progress) {
+    if (progress.pass == RunPass::kTracking && progress.done == kFrames) {
+      std::filesystem::remove_all(sequence() + "/depth");
+    }
+  };
+  EXPECT_EQ(Execute(hooks).frames, kFrames);
+  EXPECT_EQ(ReadRunMarker(root())->status, RunStatus::kComplete);
+  EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                          [](const std::string& line) {
+                            return line.find("from 4 of 4 frames") !=
+                                   std::string::npos;
+                          }),
+            1);
+  const TriangleMesh fused =
+      ReadPly(root() + "/surfaces/000_background/mesh.ply");
+  EXPECT_EQ(fused.vertices, colored.vertices);
+  EXPECT_NE(fused.colors, colored.colors);
 }
 
 TEST_F(SequenceRunTest, AFailureAtWritingTheResultsIsRecordedAndMended) {
@@ -93,10 +127,13 @@ TEST_F(SequenceRunTest, AnInterruptionIsAskedForBeforeEveryFrame) {
   hooks.shown = [&](const RunProgress& progress) { frames = progress.done; };
   EXPECT_THROW(Execute(hooks), std::runtime_error);
   EXPECT_EQ(ReadRunMarker(root())->status, RunStatus::kIncomplete);
+  // Passes over all frames are made once there are all of them.
+  EXPECT_FALSE(folder_.Has("run/refinement.jsonl"));
   std::vector<std::string> told;
   hooks = {};
   hooks.tell = [&](const std::string& line) { told.push_back(line); };
   EXPECT_EQ(Execute(hooks).frames, kFrames);
+  EXPECT_TRUE(folder_.Has("run/refinement.jsonl"));
   ASSERT_EQ(told.size(), 1u);
   EXPECT_NE(told[0].find("goes on after 2 of 4 frames"), std::string::npos);
 }

@@ -4,7 +4,9 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "splitfusion/lib/base/pi.h"
@@ -17,14 +19,15 @@ namespace {
 
 using Color = std::array<std::uint8_t, 3>;
 
+constexpr int kSurface = 3;
 constexpr Color kFused = {10, 20, 30};
 const cv::Vec3b kBlue(255, 0, 0);
 const cv::Vec3b kGreen(0, 255, 0);
 
 /// A plate of 30 by 20 cm amid the view at 1 m.
-SurfaceModel Plate() {
+SurfaceModel Plate(double step = 0.025) {
   SurfaceModel model;
-  model.mesh = PlateMesh(0.3, 0.2, 0.025, 1);
+  model.mesh = PlateMesh(0.3, 0.2, step, 1);
   for (Eigen::Vector3f& v : model.mesh.vertices) {
     v -= Eigen::Vector3f(0.15f, 0.1f, 0);
   }
@@ -42,6 +45,20 @@ void AddFrame(int frame, const Rigid3d& motion, SurfaceModel* model) {
       {frame, true, graph.motions, std::vector<char>(graph.size(), true)});
 }
 
+/// A view of one colour, all of whose pixels show the surface.
+LiveView View(const cv::Mat_<float>& depth, const cv::Vec3b& bgr) {
+  LiveView live =
+      MakeLiveView(SmallCamera(), depth, PlainColor(SmallCamera(), bgr));
+  live.labels.setTo(kSurface);
+  return live;
+}
+
+/// Takes colours from a frame.
+void Add(int frame, const LiveView& live, BestViewColors* colors) {
+  colors->Place(frame);
+  colors->Add(live);
+}
+
 /// What the camera sees of the plate in a frame, before a wall, all in one
 /// colour.
 LiveView See(const SurfaceModel& model, std::size_t index,
@@ -57,7 +74,7 @@ LiveView See(const SurfaceModel& model, std::size_t index,
   const PinholeCamera camera = SmallCamera();
   cv::Mat_<float> depth = MeshDepth(camera, mesh);
   depth.setTo(3, depth == 0);
-  return MakeLiveView(camera, depth, PlainColor(camera, bgr));
+  return View(depth, bgr);
 }
 
 /// Index of the vertex nearest to the middle.
@@ -73,9 +90,9 @@ std::size_t Middle(const SurfaceModel& model) {
 
 /// Colour of the middle after frames of these colours.
 Color ColorOf(const SurfaceModel& model, const std::vector<cv::Vec3b>& bgr) {
-  BestViewColors colors(model, 4);
+  BestViewColors colors(kSurface, model, 4);
   for (std::size_t f = 0; f < bgr.size(); ++f) {
-    colors.Add(model.history.frames[f].frame, See(model, f, bgr[f]));
+    Add(model.history.frames[f].frame, See(model, f, bgr[f]), &colors);
   }
   return colors.Colors()[Middle(model)];
 }
@@ -133,11 +150,10 @@ TEST(BestViewColors, WhatMovesInTheImageIsBlurred) {
 TEST(BestViewColors, WhatLiesBesideLiveDepthIsNotSeen) {
   SurfaceModel model = Plate();
   AddFrame(0, Away(0), &model);
-  BestViewColors colors(model, 4);
+  BestViewColors colors(kSurface, model, 4);
   const PinholeCamera camera = SmallCamera();
   for (const double z : {0.9, 1.1}) {
-    colors.Add(0, MakeLiveView(camera, WallDepth(camera, z),
-                               PlainColor(camera, kGreen)));
+    Add(0, View(WallDepth(camera, z), kGreen), &colors);
   }
   EXPECT_EQ(colors.Colors(), model.mesh.colors);
 }
@@ -149,16 +165,16 @@ TEST(BestViewColors, NorAreHiddenNodesAndLostFrames) {
   std::fill(seen.begin(), seen.end(), false);
   EXPECT_EQ(ColorOf(model, {kGreen}), kFused);
   // Of a frame that it has no motions of.
-  BestViewColors colors(model, 4);
-  colors.Add(7, See(model, 0, kGreen));
+  BestViewColors colors(kSurface, model, 4);
+  Add(7, See(model, 0, kGreen), &colors);
   EXPECT_EQ(colors.Colors(), model.mesh.colors);
 }
 
 TEST(BestViewColors, BesideADepthEdgeIsTheColorOfSomethingElse) {
   SurfaceModel model = Plate();
   AddFrame(0, Away(0), &model);
-  BestViewColors colors(model, 4);
-  colors.Add(0, See(model, 0, kGreen));
+  BestViewColors colors(kSurface, model, 4);
+  Add(0, See(model, 0, kGreen), &colors);
   const auto found = colors.Colors();
   for (std::size_t i = 0; i < found.size(); ++i) {
     const float rim = std::min(0.15f - std::abs(model.mesh.vertices[i].x()),
@@ -169,16 +185,80 @@ TEST(BestViewColors, BesideADepthEdgeIsTheColorOfSomethingElse) {
   }
 }
 
-TEST(BestViewColors, DoNotDependOnTheNumberOfThreads) {
+TEST(BestViewColors, WhereSomethingElseIsInViewAreNotTaken) {
   SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  BestViewColors colors(kSurface, model, 4);
+  LiveView live = See(model, 0, kGreen);
+  const int middle = live.labels.cols / 2;
+  live.labels.colRange(0, middle).setTo(kSurface + 1);
+  Add(0, live, &colors);
+  const auto found = colors.Colors();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const float x = model.mesh.vertices[i].x();
+    if (std::abs(x) < 0.01f || std::abs(x) > 0.11f) continue;
+    if (std::abs(model.mesh.vertices[i].y()) > 0.06f) continue;
+    EXPECT_EQ(found[i], x < 0 ? kFused : (Color{0, 255, 0})) << x;
+  }
+}
+
+TEST(BestViewColors, WhatComesIntoTheImageIsTakenFromTheNextFrameOn) {
+  SurfaceModel model = Plate();
+  AddFrame(0, MakeMotion({0, 0, 0}, {3, 0, 0}), &model);
+  AddFrame(1, Away(0), &model);
+  AddFrame(2, Away(0), &model);
+  EXPECT_EQ(ColorOf(model, {kBlue, kBlue, kGreen}), (Color{0, 255, 0}));
+}
+
+TEST(BestViewColors, CountByTheirFit) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  AddFrame(1, Away(0), &model);
+  BestViewColors colors(kSurface, model, 4);
+  const PinholeCamera camera = SmallCamera();
+  const double sigma = camera.noise.Sigma(1.0);
+  Add(0, View(WallDepth(camera, 1), kGreen), &colors);
+  Add(1, View(WallDepth(camera, 1 + 1.5 * sigma), kBlue), &colors);
+  const double share = std::exp(-1.5 * 1.5 / 2);
+  EXPECT_NEAR(colors.Colors()[Middle(model)][2], 255 * share / (1 + share), 4);
+}
+
+TEST(BestViewColors, WhatFacesAwayIsNotSeen) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Turned(180), &model);
+  EXPECT_EQ(ColorOf(model, {kGreen}), kFused);
+}
+
+TEST(BestViewColors, DrawsWhatHadBeenSeen) {
+  SurfaceModel model = Plate();
+  AddFrame(0, Away(0), &model);
+  BestViewColors colors(kSurface, model, 4);
+  Raster raster;
+  raster.Clear(SmallCamera());
+  colors.Place(0);
+  EXPECT_EQ(colors.Draw(SmallCamera(), 7, &raster),
+            static_cast<int>(model.mesh.triangles.size()));
+  double first = 0, last = 0;
+  cv::minMaxLoc(raster.triangle, nullptr, &last);
+  cv::minMaxLoc(raster.triangle, &first, nullptr, nullptr, nullptr,
+                raster.triangle >= 0);
+  EXPECT_GE(first, 7);
+  EXPECT_LT(last, 7 + model.mesh.triangles.size());
+  // It has no motions of this one.
+  colors.Place(5);
+  EXPECT_EQ(colors.Draw(SmallCamera(), 7, &raster), 0);
+}
+
+TEST(BestViewColors, DoNotDependOnTheNumberOfThreads) {
+  SurfaceModel model = Plate(0.005);
   std::vector<std::vector<Color>> found;
   for (int f = 0; f < 5; ++f) AddFrame(f, Turned(10 * f), &model);
   for (const int threads : {1, 4}) {
     const tbb::global_control limit(
         tbb::global_control::max_allowed_parallelism, threads);
-    BestViewColors colors(model, 4);
+    BestViewColors colors(kSurface, model, 4);
     for (int f = 0; f < 5; ++f) {
-      colors.Add(f, See(model, f, cv::Vec3b(40 * f, 200 - 40 * f, 99)));
+      Add(f, See(model, f, cv::Vec3b(40 * f, 200 - 40 * f, 99)), &colors);
     }
     found.push_back(colors.Colors());
   }

@@ -359,6 +359,11 @@ TEST_F(Resume, OneStateCanBeGoneOnFromWithOtherTerms) {
       "none", std::string(kOptions) + " --at=13 --from=" + (folder_ / "base"));
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.errors, HasSubstr("checkpoints/000013.bin"));
+  const ProgramResult beyond =
+      Run("none", from + (folder_ / "base") + " --max_frames=12");
+  EXPECT_NE(beyond.exit_code, 0);
+  EXPECT_THAT(beyond.errors, HasSubstr("is that after 12 frames of this run: "
+                                       "expected one before the last of 12"));
   const ProgramResult alone = Run("none", "--at=12");
   EXPECT_EQ(alone.exit_code, 2);
   EXPECT_THAT(alone.errors, HasSubstr("at = 12: expected --from"));
