@@ -37,6 +37,28 @@ void PipelineOptions::List(OptionList* list) {
                        std::to_string(stage.stride) + ")");
     }
   }
+  ListBounds(list);
+  list->Part("normal_", &point_map);
+  list->Part("", &graph);
+  list->Part("background_", &background);
+  list->Part("object_", &object);
+  list->Part("", &tracker);
+  list->Part("", &point_tracks);
+  list->Part("", &match);
+  list->Demand(match.feature_model.empty() ||
+                   (match.features && tracker.part_start.parts.count > 0),
+               "feature_model",
+               "an empty one, or --match_features and --parts above 0");
+  list->Part("", &solver);
+  list->Part("", &hidden);
+  list->Switch("best_view_colors", &best_view_colors,
+               "Once all frames are known, colour vertices from the frames "
+               "that show them well, instead of what fusion made of it.");
+  list->Part("", &split);
+  list->Part("ray_", &ray_cast);
+}
+
+void PipelineOptions::ListBounds(OptionList* list) {
   list->Number("min_tracked_pixels", &min_tracked_pixels, Range::AtLeast(1),
                "pixels", "A surface with fewer pixels in view is not tracked.");
   list->Number("min_exposure", &min_exposure, Range::Share(), "",
@@ -61,24 +83,6 @@ void PipelineOptions::List(OptionList* list) {
                "A deforming surface that is lost in plain view in so many "
                "frames, and tracked in none between, is modelled anew, under "
                "the same id.");
-  list->Part("normal_", &point_map);
-  list->Part("", &graph);
-  list->Part("background_", &background);
-  list->Part("object_", &object);
-  list->Part("", &tracker);
-  list->Part("", &point_tracks);
-  list->Part("", &match);
-  list->Demand(match.feature_model.empty() ||
-                   (match.features && tracker.part_start.parts.count > 0),
-               "feature_model",
-               "an empty one, or --match_features and --parts above 0");
-  list->Part("", &solver);
-  list->Part("", &hidden);
-  list->Switch("best_view_colors", &best_view_colors,
-               "Once all frames are known, colour vertices from the frames "
-               "that show them well, instead of what fusion made of it.");
-  list->Part("", &split);
-  list->Part("ray_", &ray_cast);
 }
 
 void PipelineOptions::Check() const {

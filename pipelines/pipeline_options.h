@@ -90,6 +90,10 @@ struct PipelineOptions {
   void List(OptionList* list);
   /// @throw InputError if a value is out of its range.
   void Check() const;
+
+ private:
+  /// When surfaces begin, are tracked, found again and begun anew.
+  void ListBounds(OptionList* list);
 };
 
 }  // namespace splitfusion

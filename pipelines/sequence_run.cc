@@ -17,11 +17,10 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/median.h"
 #include "splitfusion/lib/calibration/color_camera_estimate.h"
-#include "splitfusion/lib/model/hidden_motions.h"
 #include "splitfusion/lib/model/surface_uncertainty.h"
 #include "splitfusion/lib/report/frame_pictures.h"
-#include "splitfusion/lib/report/refinement_report.h"
 #include "splitfusion/pipelines/color_pass.h"
+#include "splitfusion/pipelines/refine_pass.h"
 
 namespace splitfusion {
 namespace {
@@ -349,7 +348,7 @@ void SequenceRun::WriteSurfaces(bool all_frames) {
   Stopwatch stopwatch;
   const SplitFusion& fusion = work_->fusion;
   work_->fusion.Finish();
-  SurfaceModels models = Models();
+  SurfaceModels models = ModelsOf(fusion);
   std::error_code ignored;  // That of an end before this one.
   std::filesystem::remove(directory_->paths().Refinement(), ignored);
   directory_->AddWritingSeconds(stopwatch.Restart());
@@ -368,27 +367,14 @@ void SequenceRun::WriteSurfaces(bool all_frames) {
   directory_->AddWritingSeconds(stopwatch.Restart());
 }
 
-SurfaceModels SequenceRun::Models() const {
-  SurfaceModels models;
-  for (const auto& [id, surface] : work_->fusion.surfaces()) {
-    models[id] = surface->Model();
-  }
-  return models;
-}
-
 /// Finds the motions of what was hidden, and reports on them.
 void SequenceRun::RefineModels(SurfaceModels* models) const {
-  const SplitFusion& fusion = work_->fusion;
-  const std::map<int, Rigid3d> poses = fusion.PosesByFrame();
-  std::string lines;
-  int done = 0;
-  for (auto& [id, model] : *models) {
-    if (!fusion.surfaces().at(id)->is_ray_cast()) {
-      lines += RefinementLines(
-          id, RefineHiddenMotions(poses, fusion.options().hidden, &model));
-    }
-    ShowPass(RunPass::kRefining, ++done, static_cast<int>(models->size()));
-  }
+  const std::string lines = RefineModelMotions(
+      work_->fusion,
+      [this](int done, int total) {
+        ShowPass(RunPass::kRefining, done, total);
+      },
+      models);
   WriteFileAtomically(directory_->paths().Refinement(),
                       [&](std::ostream& out) { out << lines; });
 }

@@ -146,7 +146,6 @@ class SequenceRun {
   /// All surfaces; `all_frames`: with hidden motions and colours that take
   /// passes over all of them.
   void WriteSurfaces(bool all_frames);
-  SurfaceModels Models() const;
   void RefineModels(SurfaceModels* models) const;
   void ColorModels(SurfaceModels* models) const;
   void WriteFailure(const std::string& error);
