@@ -4,26 +4,40 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <opencv2/core.hpp>
 
 namespace splitfusion {
 namespace {
 
 constexpr double kLeft = 56, kTop = 24, kWidth = 572, kHeight = 136;
-constexpr std::array<const char*, 8> kColors = {"#4477aa", "#ee6677", "#228833",
-                                                "#ccbb44", "#66ccee", "#aa3377",
-                                                "#999999", "#dd8833"};
+constexpr double kLine = 16;  // Height of a line of the legend.
+constexpr std::array<const char*, 12> kColors = {
+    "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377",
+    "#999999", "#dd8833", "#882255", "#44aa99", "#332288", "#ddcc77"};
 
 std::string Number(double value) { return cv::format("%.4g", value); }
 
+/// A round number of which a few make up `range`.
+double TickStep(double range) {
+  const double power = std::pow(10, std::floor(std::log10(range / 3)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (range / (step * power) <= 5) return step * power;
+  }
+  return 10 * power;
+}
+
 /// Axes of a chart: position and value to picture units.
 struct Axes {
-  std::size_t count = 0;  ///< Positions.
-  double top = 0;         ///< Value at the upper end; 0 = nothing to draw.
+  std::vector<int> frames;  ///< By position.
+  double top = 0;           ///< Value at the upper end; 0 = nothing to draw.
 
-  double X(std::size_t i) const {
-    return kLeft + kWidth * (count < 2 ? 0.5 : double(i) / double(count - 1));
+  double XOfFrame(double frame) const {
+    const double range = frames.back() - frames.front();
+    return kLeft +
+           kWidth * (range > 0 ? (frame - frames.front()) / range : 0.5);
   }
+  double X(std::size_t i) const { return XOfFrame(frames[i]); }
   double Y(double value) const { return kTop + kHeight * (1 - value / top); }
   std::string Point(std::size_t i, double value) const {
     return Number(X(i)) + "," + Number(Y(value)) + " ";
@@ -42,13 +56,20 @@ std::vector<ChartSeries> Stacked(std::vector<ChartSeries> series) {
   return series;
 }
 
-Axes MakeAxes(const std::vector<ChartSeries>& series) {
+Axes MakeAxes(const std::vector<ChartSeries>& series,
+              const std::vector<int>& frames) {
   Axes axes;
+  axes.frames = frames;
+  std::size_t count = 0;
   for (const ChartSeries& item : series) {
-    axes.count = std::max(axes.count, item.values.size());
+    count = std::max(count, item.values.size());
     for (const double value : item.values) {
       if (std::isfinite(value)) axes.top = std::max(axes.top, value);
     }
+  }
+  if (frames.empty()) {
+    axes.frames.resize(count);
+    std::iota(axes.frames.begin(), axes.frames.end(), 0);
   }
   return axes;
 }
@@ -91,16 +112,29 @@ std::string TextAt(double x, double y, const std::string& text,
          "\" text-anchor=\"" + anchor + "\">" + HtmlEscaped(text) + "</text>\n";
 }
 
+/// Frame indices below an axis at height `y`.
+std::string FrameTicks(const Axes& axes, double y) {
+  std::string svg;
+  const double first = axes.frames.front(), last = axes.frames.back();
+  const double step = std::max(1.0, TickStep(std::max(1.0, last - first)));
+  for (double tick = std::ceil(first / step) * step; tick <= last;
+       tick += step) {
+    svg +=
+        TextAt(axes.XOfFrame(tick), y + 14, cv::format("%.0f", tick), "middle");
+  }
+  return svg;
+}
+
 std::string AxesFrame(const Axes& axes) {
   std::string svg = "<path fill=\"none\" stroke=\"#888\" d=\"M" +
                     Number(kLeft) + " " + Number(kTop) + "v" + Number(kHeight) +
                     "h" + Number(kWidth) + "\"/>\n";
-  svg += TextAt(kLeft - 4, kTop + 8, Number(axes.top), "end");
-  svg += TextAt(kLeft - 4, kTop + kHeight, "0", "end");
-  svg += TextAt(kLeft, kTop + kHeight + 14, "0");
-  svg += TextAt(kLeft + kWidth, kTop + kHeight + 14,
-                std::to_string(axes.count - 1), "end");
-  return svg;
+  const double step = TickStep(axes.top);
+  for (int k = 0; k * step <= axes.top; ++k) {
+    svg += TextAt(kLeft - 4, axes.Y(k * step) + 4, cv::format("%.6g", k * step),
+                  "end");
+  }
+  return svg + FrameTicks(axes, kTop + kHeight);
 }
 
 std::string Marks(const std::vector<int>& marks, const Axes& axes) {
@@ -113,16 +147,49 @@ std::string Marks(const std::vector<int>& marks, const Axes& axes) {
   return svg;
 }
 
-std::string Legend(const std::vector<ChartSeries>& series) {
+/// Names and colours in lines from `y` on; `end`: where the last one ends.
+std::string Legend(const std::vector<std::string>& names, double y,
+                   double* end) {
   std::string svg;
   double x = kLeft;
-  for (std::size_t s = 0; s < series.size(); ++s) {
-    svg += "<rect x=\"" + Number(x) +
-           "\" y=\"184\" width=\"10\" height=\"10\" "
-           "fill=\"" +
+  for (std::size_t s = 0; s < names.size(); ++s) {
+    const double width = 26 + 6.2 * static_cast<double>(names[s].size());
+    if (x > kLeft && x + width > kLeft + kWidth) {
+      x = kLeft;
+      y += kLine;
+    }
+    svg += "<rect x=\"" + Number(x) + "\" y=\"" + Number(y - 9) +
+           "\" width=\"10\" height=\"10\" fill=\"" +
            kColors[s % kColors.size()] + "\"/>\n";
-    svg += TextAt(x + 14, 193, series[s].name);
-    x += 26 + 6.2 * static_cast<double>(series[s].name.size());
+    svg += TextAt(x + 14, y, names[s]);
+    x += width;
+  }
+  *end = y + kLine;
+  return svg;
+}
+
+std::string SvgElement(double height, const std::string& label,
+                       const std::string& content) {
+  return "<svg role=\"img\" aria-label=\"" + HtmlEscaped(label) +
+         "\" fill=\"currentColor\" viewBox=\"0 0 640 " + Number(height) +
+         "\">\n" + content + "</svg>\n";
+}
+
+/// Equal values on end as one bar.
+std::string Bars(const Strip& strip, const std::vector<std::string>& values,
+                 const Axes& axes, double y) {
+  std::string svg;
+  const std::size_t count = strip.values.size();
+  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+    while (end < count && strip.values[end] == strip.values[begin]) ++end;
+    const auto found =
+        std::find(values.begin(), values.end(), strip.values[begin]);
+    if (found == values.end()) continue;
+    const double left = axes.X(begin);
+    const double right = end < count ? axes.X(end) : axes.X(count - 1);
+    svg += "<rect x=\"" + Number(left) + "\" y=\"" + Number(y) + "\" width=\"" +
+           Number(std::max(1.0, right - left)) + "\" height=\"12\" fill=\"" +
+           kColors[(found - values.begin()) % kColors.size()] + "\"/>\n";
   }
   return svg;
 }
@@ -131,20 +198,52 @@ std::string Legend(const std::vector<ChartSeries>& series) {
 
 std::string SvgChart(const Chart& chart) {
   const auto series = chart.stacked ? Stacked(chart.series) : chart.series;
-  const Axes axes = MakeAxes(series);
-  std::string svg = "<svg viewBox=\"0 0 640 200\">\n";
-  svg += TextAt(kLeft, 14, chart.title);
+  const Axes axes = MakeAxes(series, chart.frames);
+  std::string svg = TextAt(kLeft, 14, chart.title);
   if (axes.top <= 0) {
-    return svg + TextAt(kLeft, 80, "no values") + "</svg>\n";
+    return SvgElement(
+        100, chart.title,
+        svg + TextAt(kLeft, 80, "no values") + Marks(chart.marks, axes));
   }
+  std::vector<std::string> names;
   for (std::size_t s = 0; s < series.size(); ++s) {
     const std::string color = kColors[s % kColors.size()];
     svg += chart.stacked
                ? Area(series[s], s > 0 ? &series[s - 1] : nullptr, axes, color)
                : Line(series[s], axes, color);
+    names.push_back(series[s].name);
   }
-  return svg + Marks(chart.marks, axes) + AxesFrame(axes) + Legend(series) +
-         "</svg>\n";
+  double end = 0;
+  svg += Marks(chart.marks, axes) + AxesFrame(axes) +
+         Legend(names, kTop + kHeight + 32, &end);
+  return SvgElement(end, chart.title, svg);
+}
+
+std::string SvgStrips(const std::vector<Strip>& strips,
+                      const std::vector<std::string>& values,
+                      const std::vector<int>& frames) {
+  if (frames.empty()) return "";
+  Axes axes;
+  axes.frames = frames;
+  std::string svg, names;
+  double y = 4;
+  for (const Strip& strip : strips) {
+    svg += TextAt(kLeft - 4, y + 10, strip.name, "end") +
+           Bars(strip, values, axes, y);
+    names += strip.name + " ";
+    y += kLine;
+  }
+  svg += FrameTicks(axes, y);
+  double end = 0;
+  svg += Legend(values, y + 32, &end);
+  return SvgElement(end, "over the frames: " + names, svg);
+}
+
+std::string SvgFile(const std::string& element) {
+  const std::string begin = "<svg ";
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" color=\"black\" "
+         "font-family=\"sans-serif\" font-size=\"11\" " +
+         element.substr(begin.size());
 }
 
 std::string HtmlEscaped(const std::string& text) {

@@ -17,12 +17,30 @@ struct Chart {
   std::string title;                ///< With the unit of the vertical axis.
   std::vector<ChartSeries> series;  ///< Of equal length.
   std::vector<int> marks;           ///< Positions marked red (lost frames).
-  bool stacked = false;  ///< Areas on top of each other instead of lines.
+  bool stacked = false;     ///< Areas on top of each other instead of lines.
+  std::vector<int> frames;  ///< Index of every position, ascending; empty: the
+                            ///< position itself.
 };
 
-/// The chart as one inline SVG element, 640x200 units: vertical axis from 0
-/// to the largest value, legend below. A chart without values says so.
+/// The chart as one inline SVG element, 640 units wide: vertical axis from 0
+/// to the largest value, ticks at frame indices, legend below. A chart without
+/// values says so. Text has the colour of the page.
 std::string SvgChart(const Chart& chart);
+
+/// What holds over some frames, such as the state of a surface.
+struct Strip {
+  std::string name;                 ///< Left of it.
+  std::vector<std::string> values;  ///< By position; empty: nothing.
+};
+
+/// Strips below one another over common frames, one colour a value in order of
+/// `values`, as one inline SVG element with its legend.
+std::string SvgStrips(const std::vector<Strip>& strips,
+                      const std::vector<std::string>& values,
+                      const std::vector<int>& frames);
+
+/// An inline SVG element as a file of its own, text black.
+std::string SvgFile(const std::string& element);
 
 /// Text with the characters special to HTML replaced.
 std::string HtmlEscaped(const std::string& text);

@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
 
+#include "splitfusion/lib/base/base64.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/svg_chart.h"
+#include "support/expect_input_error.h"
 #include "support/sample_report.h"
 #include "support/temporary_folder.h"
 
@@ -27,7 +32,7 @@ std::size_t Count(const std::string& text, const std::string& part) {
 
 TEST(SvgChart, ScalesToTheLargestValueAndBreaksAtGaps) {
   const std::string svg =
-      SvgChart({"cost", {{"a", {1, NAN, 4, 2}}}, {}, false});
+      SvgChart({"cost", {{"a", {1, NAN, 4, 2}}}, {}, false, {}});
   EXPECT_EQ(Count(svg, "<polyline"), 2u);
   EXPECT_TRUE(Contains(svg, ">4</text>"));
   EXPECT_FALSE(Contains(svg, "nan"));
@@ -37,36 +42,147 @@ TEST(SvgChart, ScalesToTheLargestValueAndBreaksAtGaps) {
 
 TEST(SvgChart, StacksAreas) {
   const std::string svg =
-      SvgChart({"time", {{"a", {1, 1}}, {"b", {2, NAN}}}, {}, true});
+      SvgChart({"time", {{"a", {1, 1}}, {"b", {2, NAN}}}, {}, true, {}});
   EXPECT_EQ(Count(svg, "<polygon"), 2u);
   EXPECT_TRUE(Contains(svg, ">3</text>"));  // 1 + 2.
 }
 
-TEST(SvgChart, SaysWhenThereIsNothing) {
-  EXPECT_TRUE(Contains(SvgChart({"cost", {}, {}, false}), "no values"));
-  EXPECT_TRUE(
-      Contains(SvgChart({"cost", {{"a", {NAN}}}, {}, false}), "no values"));
+TEST(SvgChart, CountsInFrames) {
+  const std::string svg =
+      SvgChart({"cost", {{"a", {1, 1, 1}}}, {1}, false, {100, 110, 200}});
+  for (const char* tick : {">100</text>", ">120</text>", ">200</text>"}) {
+    EXPECT_TRUE(Contains(svg, tick)) << tick;
+  }
+  EXPECT_FALSE(Contains(svg, ">0</text>\n<text x=\"56\""));
+  // Frame 110 is a tenth of the way, 56 + 57.2.
+  EXPECT_TRUE(Contains(svg, "M113.2 24v136"));
 }
 
-TEST(HtmlReport, ShowsLostFramesAndLoadsNothing) {
-  const TemporaryFolder folder;
-  RunDirectory run(folder / "run", {"cofusion", "", {}});
-  for (int frame = 0; frame < 3; ++frame) {
-    FrameReport report = SampleReport(frame);
-    report.surfaces[1].label = "a<b>";
-    if (frame == 1) report.surfaces[1].state = TrackState::kLost;
-    run.AddFrame(report, {});
+TEST(SvgChart, ALongLegendHasLines) {
+  Chart chart{"points", {}, {}, false, {}};
+  for (int k = 0; k < 12; ++k) {
+    chart.series.push_back({"a reason of many words", {1, 2}});
   }
-  folder.Write("run/pictures/000002_montage.png", "");
-  run.Finish();
-  const std::string html = folder.Read("run/report.html");
+  const std::string svg = SvgChart(chart);
+  EXPECT_TRUE(Contains(svg, "y=\"192\""));
+  EXPECT_TRUE(Contains(svg, "y=\"208\""));
+}
+
+TEST(SvgChart, SaysWhenThereIsNothing) {
+  EXPECT_TRUE(Contains(SvgChart({"cost", {}, {}, false, {}}), "no values"));
+  EXPECT_TRUE(
+      Contains(SvgChart({"cost", {{"a", {NAN}}}, {}, false, {}}), "no values"));
+}
+
+TEST(SvgStrips, AreOneBarForEqualValuesOnEnd) {
+  const std::string svg = SvgStrips({{"001", {"", "up", "up", "down", "up"}}},
+                                    {"up", "down"}, {0, 1, 2, 3, 4});
+  // Three bars, and two in the legend.
+  EXPECT_EQ(Count(svg, "<rect"), 5u);
+  EXPECT_TRUE(Contains(svg, "<rect x=\"199\" y=\"4\" width=\"286\""));
+}
+
+/// Three frames, 10 to 12, with a surface that is lost in the second one.
+class HtmlReportTest : public ::testing::Test {
+ protected:
+  HtmlReportTest() {
+    RunDirectory run(folder_ / "run", {"cofusion", "", {}});
+    for (int frame = 10; frame < 13; ++frame) {
+      FrameReport report = SampleReport(frame);
+      report.surfaces[1].label = "a<b>";
+      if (frame == 11) report.surfaces[1].state = TrackState::kLost;
+      if (frame == 12) {
+        report.surfaces[1].rounds[0].solver.terms[0].final = NAN;
+      }
+      run.AddFrame(report, {});
+    }
+    std::filesystem::create_directories(folder_ / "run/pictures");
+    cv::imwrite(folder_ / "run/pictures/000012_montage.png",
+                cv::Mat(30, 40, CV_8UC3, cv::Scalar(10, 200, 30)));
+    run.Finish();
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(HtmlReportTest, ShowsLostFramesAndLoadsNothing) {
+  const std::string html = folder_.Read("run/report.html");
   EXPECT_TRUE(Contains(html, "cofusion"));
   EXPECT_TRUE(Contains(html, "a&lt;b&gt;"));
+  EXPECT_FALSE(Contains(html, "a<b>"));
   EXPECT_TRUE(Contains(html, "#d00"));
-  EXPECT_TRUE(Contains(html, "href=\"pictures/000002_montage.png\""));
-  EXPECT_FALSE(Contains(html, "src="));
-  EXPECT_FALSE(Contains(html, "http"));
+  EXPECT_TRUE(Contains(html, "default-src 'none'"));
+  EXPECT_TRUE(
+      Contains(html, "alt=\"frame 12\" src=\"data:image/jpeg;base64,/9j/"));
+  EXPECT_EQ(Count(html, "src="), 1u);
+  EXPECT_FALSE(Contains(html, "http:"));
+  EXPECT_FALSE(Contains(html, "https:"));
   EXPECT_TRUE(Contains(html, "</html>"));
+}
+
+TEST_F(HtmlReportTest, IsThatOfTheRunReadAgain) {
+  const RunPaths paths(folder_ / "run");
+  EXPECT_EQ(HtmlReport({ReadReportedRun(paths)}),
+            folder_.Read("run/report.html"));
+}
+
+TEST_F(HtmlReportTest, CurvesAreThoseOfTheFiles) {
+  const RunPaths paths(folder_ / "run");
+  const RunCurves curves = ReadReportedRun(paths).curves;
+  EXPECT_EQ(curves.frames, (std::vector<int>{10, 11, 12}));
+  ASSERT_EQ(curves.surfaces.size(), 2u);
+  const SurfaceCurves& surface = curves.surfaces[1];
+  EXPECT_EQ(surface.states,
+            (std::vector<std::string>{"tracked", "lost", "tracked"}));
+  const auto group = [&](const std::string& name) {
+    return *std::find_if(
+        surface.groups.begin(), surface.groups.end(),
+        [&](const CurveGroup& one) { return one.name == name; });
+  };
+  const CurveGroup cost = group("cost");
+  ASSERT_EQ(cost.series.size(), 2u);
+  EXPECT_EQ(cost.series[0].name, "point_to_plane");
+  EXPECT_EQ(cost.series[0].values[0], 0.1);
+  EXPECT_TRUE(std::isnan(cost.series[0].values[2]));
+  EXPECT_EQ(cost.series[1].values[2], 0.025);
+  EXPECT_EQ(cost.not_finite, std::vector<int>{2}) << "a cost that diverged";
+  const CurveGroup points = group("points");
+  ASSERT_EQ(points.series.size(), 2u);
+  EXPECT_EQ(points.series[0].values[0], 1000);
+  EXPECT_EQ(points.series[1].name, "distance");
+  EXPECT_EQ(points.series[1].values[0], 200);
+  EXPECT_EQ(group("residual").series[0].values[0], 3);
+  EXPECT_EQ(group("nodes").series[0].values[1], 120);
+}
+
+TEST_F(HtmlReportTest, SeveralRunsAreCompared) {
+  ReportedRun run = ReadReportedRun(RunPaths(folder_ / "run"));
+  ReportedRun other = run;
+  run.name = "one";
+  other.name = "two & more";
+  other.evaluation = {{"headline", {{"ate_m", 0.00123456}}}};
+  const std::string html = HtmlReport({run, other});
+  EXPECT_TRUE(Contains(html, "<h2>two &amp; more</h2>"));
+  EXPECT_TRUE(Contains(html, "<td class=\"n\">0.001235</td>"));
+  EXPECT_TRUE(Contains(html, "<td>-</td>")) << "not evaluated";
+}
+
+TEST_F(HtmlReportTest, OfAFolderWithoutARunIsRefused) {
+  ExpectInputError([&] { ReadReportedRun(RunPaths(folder_ / "nothing")); },
+                   "nothing/summary.json: expected the summary of a run");
+}
+
+TEST(Base64, IsThatOfTheStandard) {
+  const auto text = [](const std::string& bytes) {
+    return Base64(bytes.data(), bytes.size());
+  };
+  // RFC 4648, 10.
+  EXPECT_EQ(text(""), "");
+  EXPECT_EQ(text("f"), "Zg==");
+  EXPECT_EQ(text("fo"), "Zm8=");
+  EXPECT_EQ(text("foo"), "Zm9v");
+  EXPECT_EQ(text("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(text("\xff\xfe\xfd"), "//79");
 }
 
 }  // namespace
