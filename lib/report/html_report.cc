@@ -48,7 +48,7 @@ svg{width:100%;font:11px sans-serif}
 figure{display:inline-block;margin:0 8px 8px 0}
 figure img{max-width:100%;height:auto}
 summary{cursor:pointer;margin:.4em 0}
-@media print{details:not([open])>*{display:block}svg,figure{break-inside:avoid}}
+@media print{svg,figure{break-inside:avoid}}
 </style></head><body>
 )";
 
