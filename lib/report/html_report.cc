@@ -186,7 +186,8 @@ std::string ChartOf(const CurveGroup& group, std::vector<int> marks,
 std::string States(const RunCurves& curves) {
   std::vector<Strip> strips;
   for (const SurfaceCurves& surface : curves.surfaces) {
-    strips.push_back({surface.name.substr(0, 3), surface.states});
+    strips.push_back(
+        {surface.name.substr(0, surface.name.find('_')), surface.states});
   }
   std::vector<std::string> values;
   for (const TrackState state :
@@ -298,11 +299,24 @@ ReportedRun RunOf(const RunPaths& paths, const Json& summary) {
 
 ReportedRun ReadReportedRun(const RunPaths& paths) {
   const Json summary = ReadJsonOrNull(paths.Summary());
-  if (!summary.is_object() || !summary.contains("surfaces")) {
+  if (!summary.is_object()) {
     throw InputError(paths.Summary() +
                      ": expected the summary of a run that has ended");
   }
-  return RunOf(paths, summary);
+  for (const char* key :
+       {"surfaces", "seconds_per_frame", "peak_memory_bytes", "versions"}) {
+    if (!summary.contains(key)) {
+      throw InputError(paths.Summary() + ": has no '" + key +
+                       "': expected the summary of a run of this version");
+    }
+  }
+  try {
+    return RunOf(paths, summary);
+  } catch (const Json::exception& error) {
+    throw InputError(
+        paths.Frames() +
+        ": not as a run of this version writes it: " + error.what());
+  }
 }
 
 std::string HtmlReport(const std::vector<ReportedRun>& runs) {

@@ -66,7 +66,7 @@ CurveGroup Costs(const Appearances& surface) {
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const Json* round = LastRound(surface[i]);
     if (round == nullptr || round->at("solver").at("terms").empty()) continue;
-    bool finite = true;
+    bool finite = round->at("solver").at("final_cost").is_number();
     for (const Json& term : round->at("solver").at("terms")) {
       const double value = NumberOrGap(term.at("final"));
       finite = finite && std::isfinite(value);
@@ -120,14 +120,13 @@ double ResidualMillimetres(const Json& surface) {
 
 SurfaceCurves CurvesOf(const Json& summary, const std::vector<Json>& frames) {
   SurfaceCurves curves;
-  curves.id = summary.at("id");
-  curves.name = RunPaths::SurfaceName(curves.id, summary.at("label"));
+  const int id = summary.at("id");
+  curves.name = RunPaths::SurfaceName(id, summary.at("label"));
   Appearances surface;
   for (const Json& frame : frames) {
-    const Json* found = FindSurface(frame, curves.id);
+    const Json* found = FindSurface(frame, id);
     surface.push_back(found);
     curves.states.push_back(found == nullptr ? "" : found->at("state"));
-    curves.events.push_back(found == nullptr ? "" : found->at("event"));
   }
   const auto key = [](const char* name) {
     return [name](const Json& one) { return NumberOrGap(one.at(name)); };

@@ -22,12 +22,10 @@ struct CurveGroup {
 
 /// What is drawn of one surface.
 struct SurfaceCurves {
-  int id = 0;        ///< 0 = background.
   std::string name;  ///< NNN_LABEL, as its folder.
   /// State by position (`tracked`, `lost`, ...); empty where there is none.
   std::vector<std::string> states;
-  std::vector<std::string> events;  ///< `born`, `reanchored`, or empty.
-  std::vector<CurveGroup> groups;   ///< The same of all surfaces.
+  std::vector<CurveGroup> groups;  ///< The same of all surfaces.
 };
 
 /// All curves of a run, from frames.jsonl.

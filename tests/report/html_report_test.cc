@@ -170,6 +170,12 @@ TEST_F(HtmlReportTest, SeveralRunsAreCompared) {
 TEST_F(HtmlReportTest, OfAFolderWithoutARunIsRefused) {
   ExpectInputError([&] { ReadReportedRun(RunPaths(folder_ / "nothing")); },
                    "nothing/summary.json: expected the summary of a run");
+  folder_.Write("run/frames.jsonl", "{\"frame\": 1}\n");
+  ExpectInputError([&] { ReadReportedRun(RunPaths(folder_ / "run")); },
+                   "run/frames.jsonl: not as a run of this version writes it");
+  folder_.Write("run/summary.json", "{\"surfaces\": []}");
+  ExpectInputError([&] { ReadReportedRun(RunPaths(folder_ / "run")); },
+                   "run/summary.json: has no 'seconds_per_frame'");
 }
 
 TEST(Base64, IsThatOfTheStandard) {
