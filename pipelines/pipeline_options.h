@@ -10,7 +10,7 @@
 #include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/lib/tracking/frame_matcher.h"
 #include "splitfusion/lib/tracking/point_tracks.h"
-#include "splitfusion/pipelines/surface_tracker.h"
+#include "splitfusion/pipelines/tracker_options.h"
 
 namespace splitfusion {
 

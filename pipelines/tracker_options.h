@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/association/association.h"
+#include "splitfusion/lib/association/association_gates.h"
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/pipelines/part_start_options.h"
 

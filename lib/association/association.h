@@ -6,20 +6,12 @@
 #include <vector>
 
 #include "splitfusion/lib/association/association_counts.h"
+#include "splitfusion/lib/association/association_gates.h"
 #include "splitfusion/lib/association/correspondence.h"
 #include "splitfusion/lib/base/registry.h"
 #include "splitfusion/lib/frame/live_view.h"
 
 namespace splitfusion {
-
-/// When a model point and a live point are taken for the same.
-struct AssociationGates {
-  double distance = 0;        ///< Metres; grows with the depth noise.
-  double normal_angle = 0;    ///< Radians between the normals.
-  double grazing_angle = 0;   ///< Radians between live normal and view ray.
-  bool coarse_color = false;  ///< Compare colours at the coarse level.
-  double lost_distance = 0;   ///< Of Association::lost, metres; 0: none.
-};
 
 /// Result of one association.
 struct Association {
