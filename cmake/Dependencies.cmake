@@ -42,7 +42,8 @@ function(splitfusion_link_dependencies target)
            opencv_imgcodecs TBB::tbb nlohmann_json::nlohmann_json
     PRIVATE opencv_dnn opencv_features2d opencv_video OpenVDB::openvdb
             pcl_kdtree pcl_sample_consensus cholmod
-            SQLite::SQLite3 ${XXHASH_LIBRARY} ${HDF5_LIBRARY})
+            SQLite::SQLite3 ZLIB::ZLIB meshoptimizer::meshoptimizer
+            ${XXHASH_LIBRARY} ${HDF5_LIBRARY})
   target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS}
                              ${CHOLMOD_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR}
                              ${HDF5_INCLUDE_DIR})

@@ -26,5 +26,7 @@ find_dependency(OpenCV 4.5 COMPONENTS core imgproc imgcodecs video dnn features2
 find_dependency(PCL 1.12 COMPONENTS common kdtree sample_consensus)
 find_dependency(nlohmann_json 3.11)
 find_dependency(SQLite3 3)
+find_dependency(ZLIB 1.2)
+find_dependency(meshoptimizer)
 
 set(CMAKE_MESSAGE_LOG_LEVEL "${splitfusion_log_level}")

@@ -15,7 +15,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/stopwatch.h"
-#include "splitfusion/lib/report/html_report.h"
+#include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/report/refinement_report.h"
 #include "splitfusion/lib/report/run_summary.h"
 #include "splitfusion/lib/report/surface_output.h"

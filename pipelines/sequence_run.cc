@@ -18,6 +18,7 @@
 #include "splitfusion/lib/base/median.h"
 #include "splitfusion/lib/calibration/color_camera_estimate.h"
 #include "splitfusion/lib/model/surface_uncertainty.h"
+#include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/report/frame_pictures.h"
 #include "splitfusion/pipelines/color_pass.h"
 #include "splitfusion/pipelines/refine_pass.h"
@@ -335,7 +336,8 @@ void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
   folder_.CheckHeld();
   WriteSurfaces(status == RunStatus::kComplete);
   directory_->Finish({status, error, folder_.marker().resumed_at,
-                      SkippedFrames(work_->reader)});
+                      SkippedFrames(work_->reader)},
+                     WriteHtmlReport);
   WarnOfSkippedFrames();
   const bool published = folder_.Publish(status, error);
   where_ = published ? folder_.root() : folder_.unfinished().root();

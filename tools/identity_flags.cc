@@ -62,9 +62,9 @@ const std::set<std::string>& Outputs() {
 }
 
 /// A number as short as it reads back exactly; other values as they are.
-std::string ValueText(const gflags::CommandLineFlagInfo& flag) {
-  if (flag.type != "double") return flag.current_value;
-  return NumberText(std::stod(flag.current_value));
+std::string ValueText(const gflags::CommandLineFlagInfo& flag,
+                      const std::string& value) {
+  return flag.type == "double" ? NumberText(std::stod(value)) : value;
 }
 
 void AddFlags(RunIdentity* identity) {
@@ -73,23 +73,37 @@ void AddFlags(RunIdentity* identity) {
   for (const gflags::CommandLineFlagInfo& flag : flags) {
     if (!IsRunFlag(flag)) continue;
     if (Outputs().count(flag.name) > 0) {
-      identity->outputs[flag.name] = ValueText(flag);
+      identity->outputs[flag.name] = ValueText(flag, flag.current_value);
     } else if (Uncounted().count(flag.name) == 0) {
-      identity->parts[flag.name] = ValueText(flag);
+      const std::string value = ValueText(flag, flag.current_value);
+      const std::string common = ValueText(flag, flag.default_value);
+      identity->parts[flag.name] = value;
+      if (value != common) identity->defaults[flag.name] = common;
     }
   }
 }
 
-void AddTerms(const TermRegistry& terms, RunIdentity* identity) {
-  const SurfaceEnergies energies =
-      SurfaceEnergies::Parse(MethodFlags().terms, terms);
-  identity->parts.merge(energies.OptionValues());
+/// The options of an energy, and the order of its terms.
+NamedValues TermParts(const std::string& text, const TermRegistry& terms) {
+  const SurfaceEnergies energies = SurfaceEnergies::Parse(text, terms);
+  NamedValues parts = energies.OptionValues();
   std::string order;
   for (const WeightedTerm& term : energies.all()) {
-    order += term.options.name + " ";
+    order += (order.empty() ? "" : " ") + term.options.name;
   }
-  order.pop_back();
-  identity->parts["terms"] = order;
+  parts["terms"] = order;
+  return parts;
+}
+
+void AddTerms(const TermRegistry& terms, RunIdentity* identity) {
+  NamedValues parts = TermParts(MethodFlags().terms, terms);
+  NamedValues common = TermParts(PipelineOptions().terms, terms);
+  for (const auto& [name, value] : parts) {
+    if (common[name] != value) identity->defaults[name] = common[name];
+    common.erase(name);
+  }
+  identity->defaults.merge(common);  // Of terms that are not there.
+  identity->parts.merge(parts);
 }
 
 }  // namespace

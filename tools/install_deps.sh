@@ -8,9 +8,12 @@ packages=(
   libceres-dev libeigen3-dev libsuitesparse-dev libopenblas0-pthread
   libopencv-dev libpcl-dev libopenvdb-dev libtbb-dev
   libgflags-dev libgoogle-glog-dev nlohmann-json3-dev libsqlite3-dev
-  libxxhash-dev libhdf5-dev
+  libxxhash-dev libhdf5-dev zlib1g-dev libmeshoptimizer-dev
   libgtest-dev libgmock-dev libbenchmark-dev doxygen python3-onnx
 )
+# The programs of report pages; a node of another origin has its own npm.
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "install_deps: needs Debian 12 (apt-get, dpkg-query not found)" >&2

@@ -20,7 +20,7 @@
 #include "splitfusion/lib/evaluation/point_follower.h"
 #include "splitfusion/lib/evaluation/run_evaluation.h"
 #include "splitfusion/lib/evaluation/track_point.h"
-#include "splitfusion/lib/report/curve_chart.h"
+#include "splitfusion/lib/page/curve_chart.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_marker.h"
 #include "splitfusion/lib/report/run_paths.h"

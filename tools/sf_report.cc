@@ -11,12 +11,14 @@
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
-#include "splitfusion/lib/report/html_report.h"
-#include "splitfusion/lib/report/svg_chart.h"
+#include "splitfusion/lib/page/html_report.h"
+#include "splitfusion/lib/page/svg_chart.h"
 #include "tool_main.h"
 
 DEFINE_string(output, "", "Page to write, FILE.html.");
 DEFINE_string(figures, "", "Folder for the curves, one SVG file each.");
+DEFINE_string(media, "auto",
+              "Pictures, surfaces in 3D: auto (of one run alone), all, none.");
 
 namespace splitfusion {
 namespace {
@@ -71,9 +73,14 @@ int Run(const std::vector<std::string>& folders) {
               "one run directory or more");
   CheckOption(!FLAGS_output.empty() || !FLAGS_figures.empty(), "output", "''",
               "a file to write, or --figures");
+  CheckOption(
+      FLAGS_media == "auto" || FLAGS_media == "all" || FLAGS_media == "none",
+      "media", FLAGS_media, "auto, all or none");
   const std::vector<ReportedRun> runs = ReadRuns(folders);
   if (!FLAGS_output.empty()) {
-    const std::string page = HtmlReport(runs);
+    const bool media =
+        FLAGS_media == "auto" ? runs.size() == 1 : FLAGS_media == "all";
+    const std::string page = HtmlReport(runs, {media, media});
     WriteFileAtomically(FLAGS_output, [&](std::ostream& out) { out << page; });
     std::cout << FLAGS_output << ": " << runs.size()
               << (runs.size() == 1 ? " run\n" : " runs\n");

@@ -8,7 +8,7 @@
 #include "splitfusion/lib/energy/frozen_problem.h"
 #include "splitfusion/lib/experiment/result_files.h"
 #include "splitfusion/lib/experiment/solver_setting.h"
-#include "splitfusion/lib/report/curve_chart.h"
+#include "splitfusion/lib/page/curve_chart.h"
 
 namespace splitfusion {
 

@@ -15,7 +15,6 @@
 #include "splitfusion/lib/base/owned_files.h"
 #include "splitfusion/lib/base/process_memory.h"
 #include "splitfusion/lib/base/stopwatch.h"
-#include "splitfusion/lib/report/html_report.h"
 #include "splitfusion/lib/report/iterations_csv.h"
 #include "splitfusion/lib/report/report_json.h"
 
@@ -189,7 +188,8 @@ RunSummary RunDirectory::Summary() const {
   return summary;
 }
 
-void RunDirectory::Finish(const RunEnding& ending) const {
+void RunDirectory::Finish(const RunEnding& ending,
+                          const PageWriter& write_page) const {
   RunSummary facts = Summary();
   facts.complete = ending.status == RunStatus::kComplete;
   facts.status = ToString(ending.status);
@@ -197,7 +197,7 @@ void RunDirectory::Finish(const RunEnding& ending) const {
   facts.resumed_at = ending.resumed_at;
   facts.skipped_frames = ending.skipped_frames;
   const nlohmann::ordered_json summary = ToJson(facts);
-  WriteHtmlReport(paths_, summary);
+  if (write_page) write_page(paths_, summary);
   WriteJson(paths_.Summary(), summary, 2);
 }
 

@@ -2,7 +2,9 @@
 #define SPLITFUSION_LIB_REPORT_RUN_DIRECTORY_H_
 
 #include <fstream>
+#include <functional>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,9 +83,14 @@ class RunDirectory {
   /// Summary of the frames so far.
   RunSummary Summary() const;
 
-  /// Writes summary.json and report.html; the last call of a run. The ending
-  /// stands in both. @throw InputError if a file cannot be written.
-  void Finish(const RunEnding& ending = {}) const;
+  /// Writes what people look at, given the value of summary.json.
+  using PageWriter = std::function<void(const RunPaths& paths,
+                                        const nlohmann::ordered_json& summary)>;
+
+  /// Calls `write_page` and writes summary.json, the last file of a run. The
+  /// ending stands in both. @throw InputError if a file cannot be written.
+  void Finish(const RunEnding& ending = {},
+              const PageWriter& write_page = {}) const;
 
  private:
   /// The streams with their paths.

@@ -16,6 +16,9 @@ struct RunIdentity {
   NamedValues parts;
   /// Options of what is written about the result: pictures, meshes.
   NamedValues outputs;
+  /// Of the options among `parts` that differ from their defaults, these; empty
+  /// text where an option is there by another one alone. For people.
+  NamedValues defaults = {};
 
   /// Of `parts`, 32 hexadecimal digits.
   std::string Hash() const;

@@ -46,6 +46,7 @@ Json ToJson(const RunMarker& marker) {
           {"resumed_at", marker.resumed_at},
           {"identity", marker.identity.Hash()},
           {"identity_parts", marker.identity.parts},
+          {"defaults", marker.identity.defaults},
           {"outputs", marker.identity.outputs},
           {"phase", static_cast<int>(marker.phase)},
           {"files", files}};
@@ -74,6 +75,7 @@ RunMarker FromJson(const Json& json) {
   marker.resumed_at = json.at("resumed_at").get<std::vector<int>>();
   marker.identity.parts = json.at("identity_parts").get<NamedValues>();
   marker.identity.outputs = json.at("outputs").get<NamedValues>();
+  marker.identity.defaults = json.value("defaults", NamedValues());
   const int phase = json.value("phase", 0);
   if (phase < 0 || phase > static_cast<int>(PublishingPhase::kMoving)) {
     throw InputError("phase " + std::to_string(phase) + ": expected 0..2");

@@ -1,4 +1,4 @@
-#include "splitfusion/lib/report/curve_chart.h"
+#include "splitfusion/lib/page/curve_chart.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,8 @@
 #include <limits>
 #include <opencv2/core.hpp>
 
-#include "splitfusion/lib/report/svg_chart.h"
+#include "splitfusion/lib/page/html_page.h"
+#include "splitfusion/lib/page/svg_chart.h"
 
 namespace splitfusion {
 namespace {

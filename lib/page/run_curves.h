@@ -1,11 +1,11 @@
-#ifndef SPLITFUSION_LIB_REPORT_RUN_CURVES_H_
-#define SPLITFUSION_LIB_REPORT_RUN_CURVES_H_
+#ifndef SPLITFUSION_LIB_PAGE_RUN_CURVES_H_
+#define SPLITFUSION_LIB_PAGE_RUN_CURVES_H_
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "splitfusion/lib/report/svg_chart.h"
+#include "splitfusion/lib/page/svg_chart.h"
 
 namespace splitfusion {
 
@@ -28,9 +28,20 @@ struct SurfaceCurves {
   std::vector<CurveGroup> groups;  ///< The same of all surfaces.
 };
 
+/// Something that happened to a surface in a frame.
+struct RunEvent {
+  int frame = 0;           ///< Frame index.
+  std::string what;        ///< `born`, `revived`, `merged`, `reanchored`, ...
+  int surface = 0;         ///< Id; 0: none yet.
+  std::string class_name;  ///< Of the surface or detection.
+};
+
 /// All curves of a run, from frames.jsonl.
 struct RunCurves {
-  std::vector<int> frames;              ///< Their indices, ascending.
+  std::vector<int> frames;  ///< Their indices, ascending.
+  /// Decisions that begin or end something, and surfaces that begin anew; in
+  /// order of frames.
+  std::vector<RunEvent> events;
   CurveGroup seconds;                   ///< Of a frame, by part.
   std::vector<SurfaceCurves> surfaces;  ///< By id.
 };
@@ -42,4 +53,4 @@ RunCurves GatherCurves(const std::vector<nlohmann::ordered_json>& frames,
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_REPORT_RUN_CURVES_H_
+#endif  // SPLITFUSION_LIB_PAGE_RUN_CURVES_H_

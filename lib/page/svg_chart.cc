@@ -1,11 +1,12 @@
-#include "splitfusion/lib/report/svg_chart.h"
+#include "splitfusion/lib/page/svg_chart.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <opencv2/core.hpp>
+
+#include "splitfusion/lib/page/html_page.h"
 
 namespace splitfusion {
 namespace {
@@ -31,11 +32,12 @@ double TickStep(double range) {
 struct Axes {
   std::vector<int> frames;  ///< By position.
   double top = 0;           ///< Value at the upper end; 0 = nothing to draw.
+  double margin = 0;        ///< Beside the first and the last position.
 
   double XOfFrame(double frame) const {
-    const double range = frames.back() - frames.front();
-    return kLeft +
-           kWidth * (range > 0 ? (frame - frames.front()) / range : 0.5);
+    const double range = frames.back() - frames.front() + 2 * margin;
+    const double from = frames.front() - margin;
+    return kLeft + kWidth * (range > 0 ? (frame - from) / range : 0.5);
   }
   double X(std::size_t i) const { return XOfFrame(frames[i]); }
   double Y(double value) const { return kTop + kHeight * (1 - value / top); }
@@ -56,18 +58,25 @@ std::vector<ChartSeries> Stacked(std::vector<ChartSeries> series) {
   return series;
 }
 
-Axes MakeAxes(const std::vector<ChartSeries>& series,
-              const std::vector<int>& frames) {
+double SpreadOf(const ChartSeries& series, std::size_t i) {
+  const double spread = i < series.spread.size() ? series.spread[i] : 0;
+  return std::isfinite(spread) ? spread : 0;
+}
+
+/// `series`: as they are drawn.
+Axes MakeAxes(const std::vector<ChartSeries>& series, const Chart& chart) {
   Axes axes;
-  axes.frames = frames;
-  std::size_t count = 0;
+  axes.frames = chart.frames;
+  std::size_t count = chart.names.size();
   for (const ChartSeries& item : series) {
     count = std::max(count, item.values.size());
-    for (const double value : item.values) {
-      if (std::isfinite(value)) axes.top = std::max(axes.top, value);
+    for (std::size_t i = 0; i < item.values.size(); ++i) {
+      const double end = item.values[i] + SpreadOf(item, i);
+      if (std::isfinite(end)) axes.top = std::max(axes.top, end);
     }
   }
-  if (frames.empty()) {
+  if (!chart.names.empty()) axes.margin = 0.5;
+  if (chart.frames.empty()) {
     axes.frames.resize(count);
     std::iota(axes.frames.begin(), axes.frames.end(), 0);
   }
@@ -125,7 +134,36 @@ std::string FrameTicks(const Axes& axes, double y) {
   return svg;
 }
 
-std::string AxesFrame(const Axes& axes) {
+/// Names below an axis, as much of each as there is room for.
+std::string NameTicks(const Axes& axes, const std::vector<std::string>& names,
+                      double y) {
+  std::string svg;
+  const double room = kWidth / static_cast<double>(names.size()) / 6.2;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto characters = static_cast<std::size_t>(std::max(2.0, room));
+    svg += TextAt(axes.X(i), y + 14, names[i].substr(0, characters), "middle");
+  }
+  return svg;
+}
+
+/// A dot at every value, with its error bar.
+std::string Spreads(const ChartSeries& series, const Axes& axes,
+                    const std::string& color) {
+  std::string svg;
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    const double spread = SpreadOf(series, i), value = series.values[i];
+    if (!std::isfinite(value)) continue;
+    svg += "<circle r=\"2.5\" fill=\"" + color + "\" cx=\"" +
+           Number(axes.X(i)) + "\" cy=\"" + Number(axes.Y(value)) + "\"/>\n";
+    if (spread == 0) continue;
+    svg += "<path stroke=\"" + color + "\" d=\"M" + Number(axes.X(i)) + " " +
+           Number(axes.Y(value - spread)) + "V" +
+           Number(axes.Y(value + spread)) + "\"/>\n";
+  }
+  return svg;
+}
+
+std::string AxesFrame(const Axes& axes, const Chart& chart) {
   std::string svg = "<path fill=\"none\" stroke=\"#888\" d=\"M" +
                     Number(kLeft) + " " + Number(kTop) + "v" + Number(kHeight) +
                     "h" + Number(kWidth) + "\"/>\n";
@@ -134,7 +172,9 @@ std::string AxesFrame(const Axes& axes) {
     svg += TextAt(kLeft - 4, axes.Y(k * step) + 4, cv::format("%.6g", k * step),
                   "end");
   }
-  return svg + FrameTicks(axes, kTop + kHeight);
+  return svg + (chart.names.empty()
+                    ? FrameTicks(axes, kTop + kHeight)
+                    : NameTicks(axes, chart.names, kTop + kHeight));
 }
 
 std::string Marks(const std::vector<int>& marks, const Axes& axes) {
@@ -198,7 +238,7 @@ std::string Bars(const Strip& strip, const std::vector<std::string>& values,
 
 std::string SvgChart(const Chart& chart) {
   const auto series = chart.stacked ? Stacked(chart.series) : chart.series;
-  const Axes axes = MakeAxes(series, chart.frames);
+  const Axes axes = MakeAxes(series, chart);
   std::string svg = TextAt(kLeft, 14, chart.title);
   if (axes.top <= 0) {
     return SvgElement(
@@ -211,10 +251,11 @@ std::string SvgChart(const Chart& chart) {
     svg += chart.stacked
                ? Area(series[s], s > 0 ? &series[s - 1] : nullptr, axes, color)
                : Line(series[s], axes, color);
+    if (!chart.names.empty()) svg += Spreads(series[s], axes, color);
     names.push_back(series[s].name);
   }
   double end = 0;
-  svg += Marks(chart.marks, axes) + AxesFrame(axes) +
+  svg += Marks(chart.marks, axes) + AxesFrame(axes, chart) +
          Legend(names, kTop + kHeight + 32, &end);
   return SvgElement(end, chart.title, svg);
 }
@@ -239,22 +280,15 @@ std::string SvgStrips(const std::vector<Strip>& strips,
   return SvgElement(end, "over the frames: " + names, svg);
 }
 
+std::vector<std::string> ChartColors() {
+  return {kColors.begin(), kColors.end()};
+}
+
 std::string SvgFile(const std::string& element) {
   const std::string begin = "<svg ";
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" color=\"black\" "
          "font-family=\"sans-serif\" font-size=\"11\" " +
          element.substr(begin.size());
-}
-
-std::string HtmlEscaped(const std::string& text) {
-  static const std::map<char, std::string> special = {
-      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
-  std::string escaped;
-  for (const char c : text) {
-    const auto found = special.find(c);
-    escaped += found == special.end() ? std::string(1, c) : found->second;
-  }
-  return escaped;
 }
 
 }  // namespace splitfusion

@@ -1,4 +1,4 @@
-#include "splitfusion/lib/report/html_report.h"
+#include "splitfusion/lib/page/html_report.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "splitfusion/lib/base/base64.h"
 #include "splitfusion/lib/report/run_directory.h"
-#include "splitfusion/lib/report/svg_chart.h"
+#include "splitfusion/lib/page/svg_chart.h"
 #include "support/expect_input_error.h"
 #include "support/sample_report.h"
 #include "support/temporary_folder.h"

@@ -1,10 +1,12 @@
-#include "splitfusion/lib/report/run_curves.h"
+#include "splitfusion/lib/page/run_curves.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "splitfusion/lib/report/frame_parts.h"
@@ -144,6 +146,25 @@ SurfaceCurves CurvesOf(const Json& summary, const std::vector<Json>& frames) {
   return curves;
 }
 
+/// What a frame decided and what happened in it, without what goes on as it
+/// was: detections of known surfaces, and those that may become one.
+void AddEvents(const Json& frame, std::vector<RunEvent>* events) {
+  static const std::set<std::string> lasting = {"matched", "missed", "pending",
+                                                "ignored"};
+  for (const Json& decision : frame.at("decisions")) {
+    const std::string action = decision.at("action");
+    if (lasting.count(action) > 0) continue;
+    events->push_back({frame.at("frame"), action, decision.at("surface"),
+                       decision.at("class_name")});
+  }
+  for (const Json& surface : frame.at("surfaces")) {
+    const std::string event = surface.at("event");
+    if (event.empty() || event == "born") continue;  // That is a decision.
+    events->push_back(
+        {frame.at("frame"), event, surface.at("id"), surface.at("label")});
+  }
+}
+
 }  // namespace
 
 RunCurves GatherCurves(const std::vector<Json>& frames, const Json& surfaces) {
@@ -156,7 +177,10 @@ RunCurves GatherCurves(const std::vector<Json>& frames, const Json& surfaces) {
       values[i] = NumberOrGap(frames[i].at("seconds").at(part.name));
     }
   }
-  for (const Json& frame : frames) curves.frames.push_back(frame.at("frame"));
+  for (const Json& frame : frames) {
+    curves.frames.push_back(frame.at("frame"));
+    AddEvents(frame, &curves.events);
+  }
   for (const Json& surface : surfaces) {
     curves.surfaces.push_back(CurvesOf(surface, frames));
   }

@@ -1,5 +1,5 @@
-#ifndef SPLITFUSION_LIB_REPORT_SVG_CHART_H_
-#define SPLITFUSION_LIB_REPORT_SVG_CHART_H_
+#ifndef SPLITFUSION_LIB_PAGE_SVG_CHART_H_
+#define SPLITFUSION_LIB_PAGE_SVG_CHART_H_
 
 #include <string>
 #include <vector>
@@ -10,9 +10,11 @@ namespace splitfusion {
 struct ChartSeries {
   std::string name;            ///< For the legend.
   std::vector<double> values;  ///< One per position on the horizontal axis.
+  std::vector<double> spread =
+      {};  ///< Half the height of error bars, or empty.
 };
 
-/// A small chart over frames.
+/// A small chart over frames, or over what has names.
 struct Chart {
   std::string title;                ///< With the unit of the vertical axis.
   std::vector<ChartSeries> series;  ///< Of equal length.
@@ -20,6 +22,9 @@ struct Chart {
   bool stacked = false;     ///< Areas on top of each other instead of lines.
   std::vector<int> frames;  ///< Index of every position, ascending; empty: the
                             ///< position itself.
+  std::vector<std::string> names =
+      {};                      ///< Of the positions, instead of frames.
+  std::string axis = "frame";  ///< What the positions are.
 };
 
 /// The chart as one inline SVG element, 640 units wide: vertical axis from 0
@@ -42,9 +47,9 @@ std::string SvgStrips(const std::vector<Strip>& strips,
 /// An inline SVG element as a file of its own, text black.
 std::string SvgFile(const std::string& element);
 
-/// Text with the characters special to HTML replaced.
-std::string HtmlEscaped(const std::string& text);
+/// Colours of series, again from the first one on after the last.
+std::vector<std::string> ChartColors();
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_REPORT_SVG_CHART_H_
+#endif  // SPLITFUSION_LIB_PAGE_SVG_CHART_H_

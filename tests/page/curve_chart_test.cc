@@ -1,4 +1,4 @@
-#include "splitfusion/lib/report/curve_chart.h"
+#include "splitfusion/lib/page/curve_chart.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

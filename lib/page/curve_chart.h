@@ -1,5 +1,5 @@
-#ifndef SPLITFUSION_LIB_REPORT_CURVE_CHART_H_
-#define SPLITFUSION_LIB_REPORT_CURVE_CHART_H_
+#ifndef SPLITFUSION_LIB_PAGE_CURVE_CHART_H_
+#define SPLITFUSION_LIB_PAGE_CURVE_CHART_H_
 
 #include <string>
 #include <utility>
@@ -35,4 +35,4 @@ std::string CurveChartSvg(const CurveChart& chart);
 
 }  // namespace splitfusion
 
-#endif  // SPLITFUSION_LIB_REPORT_CURVE_CHART_H_
+#endif  // SPLITFUSION_LIB_PAGE_CURVE_CHART_H_

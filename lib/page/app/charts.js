@@ -1,0 +1,191 @@
+// Charts that can be zoomed and tell the values under the pointer, in the place
+// of the page's drawings, which remain for print.
+
+import uPlot from 'uplot';
+import {onFrame, showFrame} from './frames.js';
+
+/** A number as people read it. */
+export function rounded(value) {
+  if (value == null) return '-';
+  if (Number.isInteger(value)) return String(value);
+  return String(Number(value.toPrecision(4)));
+}
+
+/** Running sums over the series; what has no value adds nothing. */
+export function stackedSums(rows) {
+  const sums = [];
+  for (const row of rows) {
+    const below = sums[sums.length - 1];
+    sums.push(row.map((value, i) => (value ?? 0) + (below ? below[i] : 0)));
+  }
+  return sums;
+}
+
+/** Draws marks: frames in which a surface was lost, costs that diverged. */
+function drawMarks(plot, places) {
+  const {ctx, bbox} = plot;
+  ctx.save();
+  ctx.strokeStyle = '#dd000080';
+  ctx.lineWidth = devicePixelRatio;
+  for (const place of places) {
+    const x = plot.valToPos(place, 'x', true);
+    if (x < bbox.left || x > bbox.left + bbox.width) continue;
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+  }
+  ctx.restore();
+}
+
+/** Vertical bars over the values, as wide as their spread. */
+function drawSpreads(plot, series) {
+  const {ctx} = plot;
+  ctx.save();
+  ctx.lineWidth = devicePixelRatio;
+  series.forEach((one, s) => {
+    ctx.strokeStyle = plot.series[s + 1].stroke(plot, s + 1);
+    (one.spread ?? []).forEach((spread, i) => {
+      if (spread == null || one.values[i] == null) return;
+      const x = plot.valToPos(plot.data[0][i], 'x', true);
+      ctx.beginPath();
+      ctx.moveTo(x, plot.valToPos(one.values[i] - spread, 'y', true));
+      ctx.lineTo(x, plot.valToPos(one.values[i] + spread, 'y', true));
+      ctx.stroke();
+    });
+  });
+  ctx.restore();
+}
+
+/** uPlot's options of a chart that is `width` pixels wide. */
+function optionsOf(chart, colors, width, group) {
+  const stroke = () => getComputedStyle(document.body).color;
+  const grid = {stroke: '#8883', width: 1};
+  const names = chart.x_names;
+  const axes = [
+    {stroke, grid, ticks: grid, font: '11px sans-serif', size: 30},
+    {stroke, grid, ticks: grid, font: '11px sans-serif', size: 56},
+  ];
+  if (names) {
+    axes[0].splits = () => names.map((_, i) => i);
+    axes[0].values = (plot, places) => places.map(i => names[i] ?? '');
+  }
+  // Areas lie over one another: the whole first, its parts over it.
+  const order = chart.series.map((_, s) => s);
+  if (chart.stacked) order.reverse();
+  const series = order.map(s => {
+    const color = colors[s % colors.length];
+    return {
+      label: chart.series[s].name,
+      stroke: color,
+      fill: chart.stacked ? color : undefined,
+      width: chart.stacked ? 0 : 1.5,
+      points: {show: names ? true : undefined, size: 5},
+      value: (plot, _, i, at) =>
+          rounded(at == null ? null : chart.series[s].values[at]),
+    };
+  });
+  const marks = chart.marks.map(i => chart.x[i]);
+  return {
+    width, height: 190, title: chart.title,
+    scales: {x: {time: false, range: names ? [-.5, names.length - .5] : null},
+             y: {range: (plot, low, high) =>
+                     [Math.min(0, low), high > 0 ? high * 1.05 : 1]}},
+    axes,
+    legend: {live: true},
+    series: [{label: chart.x_title,
+              value: (plot, x) =>
+                  x == null ? '-' : names ? names[x] : rounded(x)}, ...series],
+    cursor: {y: false, sync: {key: group, scales: ['x', null]},
+             drag: {x: true, y: false}},
+    hooks: {draw: [plot => drawMarks(plot, marks),
+                   plot => drawSpreads(plot, chart.series)]},
+  };
+}
+
+/** uPlot's rows of a chart: places, and what is drawn over them. */
+function rowsOf(chart) {
+  const rows = chart.series.map(series => series.values);
+  return [chart.x, ...(chart.stacked ? stackedSums(rows).reverse() : rows)];
+}
+
+/** Moves the cursor to the position nearest to a place on the axis. */
+function setCursor(plot, place) {
+  plot.setCursor({left: plot.valToPos(place, 'x'), top: 0}, false);
+}
+
+/** Zooms about the cursor, or the middle. */
+function zoom(plot, factor) {
+  const {min, max} = plot.scales.x;
+  const at = plot.cursor.idx == null ? (min + max) / 2 :
+                                       plot.data[0][plot.cursor.idx];
+  plot.setScale('x', {min: at - (at - min) * factor,
+                      max: at + (max - at) * factor});
+}
+
+/** What keys do: left and right the next position, + and - zoom, Escape all. */
+function onKey(event, plot, show) {
+  const x = plot.data[0];
+  const step = {ArrowLeft: -1, ArrowRight: 1}[event.key];
+  if (step) {
+    const at = plot.cursor.idx == null ? 0 : plot.cursor.idx + step;
+    const place = x[Math.min(Math.max(at, 0), x.length - 1)];
+    setCursor(plot, place);
+    show(place);
+  } else if (event.key === '+' || event.key === '=') {
+    zoom(plot, 1 / 2);
+  } else if (event.key === '-') {
+    zoom(plot, 2);
+  } else if (event.key === 'Escape') {
+    plot.setScale('x', {min: x[0], max: x[x.length - 1]});
+  } else {
+    return;
+  }
+  event.preventDefault();
+}
+
+/** Draws a chart into its figure. */
+function draw(figure, chart, colors) {
+  const place = figure.querySelector('.plot');
+  figure.classList.add('drawn');
+  const plot = new uPlot(
+      optionsOf(chart, colors, place.clientWidth, chart.group), rowsOf(chart),
+      place);
+  figure.plot = plot;
+  const show = x => chart.frames && showFrame(chart.group, x, figure);
+  new ResizeObserver(() => {
+    if (place.clientWidth > 0) {
+      plot.setSize({width: place.clientWidth, height: 190});
+    }
+  }).observe(place);
+  figure.addEventListener('keydown', event => onKey(event, plot, show));
+  plot.over.addEventListener('click', () => {
+    if (plot.cursor.idx != null) show(plot.data[0][plot.cursor.idx]);
+  });
+  if (chart.frames) {
+    onFrame(chart.group, figure, frame => setCursor(plot, frame));
+  }
+  matchMedia('(prefers-color-scheme: dark)')
+      .addEventListener('change', () => plot.redraw());
+}
+
+/** The charts of the page's data, with their places filled in. */
+function readCharts() {
+  const data = JSON.parse(document.getElementById('charts').textContent);
+  for (const chart of data.charts) chart.x = data.places[chart.x];
+  return data;
+}
+
+// Charts are drawn when they come near: there may be hundreds.
+const data = readCharts();
+const observer = new IntersectionObserver(entries => {
+  for (const {target, isIntersecting} of entries) {
+    if (!isIntersecting) continue;
+    observer.unobserve(target);
+    draw(target, data.charts[target.dataset.chart], data.colors);
+  }
+}, {rootMargin: '400px'});
+for (const figure of document.querySelectorAll('figure.chart')) {
+  observer.observe(figure);
+}
+window.splitfusion = {...window.splitfusion, charts: data.charts};
