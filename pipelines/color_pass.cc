@@ -48,7 +48,8 @@ void PlaceAndLabel(const SurfaceMap& surfaces, const PreparedFrame& prepared,
 std::string ColorFromBestViews(const ImageFolderReader& reader, int frames,
                                const SplitFusion& fusion, bool reads_ahead,
                                const std::function<void(int)>& shown,
-                               SurfaceModels* models) {
+                               SurfaceModels* models,
+                               ResidualsById* residuals) {
   std::map<int, BestViewColors> colors;
   for (const auto& [id, surface] : fusion.surfaces()) {
     colors.try_emplace(id, id, models->at(id),
@@ -77,6 +78,9 @@ std::string ColorFromBestViews(const ImageFolderReader& reader, int frames,
                     &read->prepared->live.labels);
       for (auto& [id, surface_colors] : colors) {
         surface_colors.Add(read->prepared->live);
+        if (fusion.surfaces().at(id)->is_ray_cast()) continue;
+        AddDepthResiduals(surface_colors, read->prepared->live, raster,
+                          &(*residuals)[id]);
       }
     } else if (++missed == 1) {
       trouble = read->trouble;

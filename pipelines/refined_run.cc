@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Whether a file of the run is written anew, or is no more than what it was
-/// made from: checkpoints have the motions as they were tracked.
+/// made from: checkpoints and residuals are of the motions as they were.
 bool IsWrittenAnew(const std::string& path) {
   const RunPaths here("");
   const fs::path file(path);
@@ -36,6 +36,7 @@ bool IsWrittenAnew(const std::string& path) {
          path == here.HtmlReport() || path == here.Options() ||
          path == here.Evaluation() || first == "checkpoints" ||
          file.filename() == "motions.bin" ||
+         file.filename() == "residuals.h5" ||
          file.parent_path().filename() == "warped";
 }
 

@@ -356,12 +356,19 @@ void SequenceRun::WriteSurfaces(bool all_frames) {
   directory_->AddWritingSeconds(stopwatch.Restart());
   if (all_frames && fusion.options().hidden.refine) RefineModels(&models);
   directory_->AddRefiningSeconds(stopwatch.Restart());
-  if (all_frames && fusion.options().best_view_colors) ColorModels(&models);
+  ResidualsById residuals;
+  if (all_frames && fusion.options().best_view_colors) {
+    ColorModels(&models, &residuals);
+  }
   directory_->AddColoringSeconds(stopwatch.Restart());
   for (const auto& [id, surface] : fusion.surfaces()) {
     const SurfaceModel& model = models.at(id);
     const StretchedArea stretch =
         WriteSurface(directory_->paths(), *surface, model, options_.warped);
+    if (residuals.count(id) > 0) {
+      WriteResiduals(directory_->paths().Residuals(id, surface->label()),
+                     residuals[id]);
+    }
     directory_->SetWritten(
         id, {model.graph.size(), static_cast<int>(model.mesh.vertices.size()),
              stretch});
@@ -381,14 +388,16 @@ void SequenceRun::RefineModels(SurfaceModels* models) const {
                       [&](std::ostream& out) { out << lines; });
 }
 
-/// Colours vertices from the frames that show them well. What was tracked is
-/// not lost for a trouble with colours.
-void SequenceRun::ColorModels(SurfaceModels* models) const {
+/// Colours vertices from the frames that show them well, and finds how far
+/// surfaces lie from the live depth. What was tracked is not lost for a trouble
+/// with colours.
+void SequenceRun::ColorModels(SurfaceModels* models,
+                              ResidualsById* residuals) const {
   try {
     const std::string trouble = ColorFromBestViews(
         work_->reader, done_, work_->fusion, options_.reads_ahead,
-        [this](int done) { ShowPass(RunPass::kColoring, done, done_); },
-        models);
+        [this](int done) { ShowPass(RunPass::kColoring, done, done_); }, models,
+        residuals);
     if (!trouble.empty()) Warn(trouble);
   } catch (const std::exception& error) {
     Warn(std::string("vertices keep the colours of fusion: ") + error.what());

@@ -12,6 +12,7 @@
 #include "splitfusion/lib/energy/problem_recorder.h"
 #include "splitfusion/lib/energy/solution_recorder.h"
 #include "splitfusion/lib/model/surface_model.h"
+#include "splitfusion/lib/render/depth_residuals.h"
 #include "splitfusion/lib/report/checkpoint_schedule.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
@@ -147,7 +148,7 @@ class SequenceRun {
   /// passes over all of them.
   void WriteSurfaces(bool all_frames);
   void RefineModels(SurfaceModels* models) const;
-  void ColorModels(SurfaceModels* models) const;
+  void ColorModels(SurfaceModels* models, ResidualsById* residuals) const;
   void WriteFailure(const std::string& error);
 
   std::string ExpectedDepth() const;

@@ -94,7 +94,7 @@ void HtmlPage::AddChart(const Chart& chart, const std::string& group) {
   charts_.push_back(data);
 }
 
-void HtmlPage::AddViewer(const RunScene& scene) {
+void HtmlPage::AddViewer(const RunScene& scene, const std::string& group) {
   if (ViewerProgram().text.empty()) {
     body_ +=
         "<p>No viewer: this program was built without node, or without the "
@@ -102,10 +102,12 @@ void HtmlPage::AddViewer(const RunScene& scene) {
     return;
   }
   has_viewer_ = true;
+  Json header = scene.header;
+  header["run"] = group;
   body_ +=
       "<div class=\"viewer\"><script type=\"application/json\" "
       "class=\"scene\">" +
-      DataOf(scene.header) +
+      DataOf(header) +
       "</script><script type=\"text/plain\" class=\"arrays\">" + scene.arrays +
       "</script></div>\n";
 }

@@ -25,8 +25,9 @@ class HtmlPage {
   /// axis has no frames.
   void AddChart(const Chart& chart, const std::string& group);
 
-  /// Adds a viewer, or a line that says why there is none.
-  void AddViewer(const RunScene& scene);
+  /// Adds a viewer, or a line that says why there is none. `group`: of the
+  /// charts over its frames.
+  void AddViewer(const RunScene& scene, const std::string& group);
 
   /// The whole page.
   std::string Text() const;

@@ -59,7 +59,7 @@ void AddChart(const CurveGroup& group, std::vector<int> marks,
   marks.insert(marks.end(), group.not_finite.begin(), group.not_finite.end());
   page->AddChart(
       {group.title, group.series, marks, group.stacked, run.curves.frames},
-      run.folder);
+      run.name);
 }
 
 /// Which surface was in which state when.
@@ -159,7 +159,7 @@ std::string Options(const ReportedRun& run) {
 void AddViewer(const ReportedRun& run, HtmlPage* page) {
   page->Add(Heading("Surfaces in 3D"));
   try {
-    page->AddViewer(SceneOfRun(RunPaths(run.folder), run.curves));
+    page->AddViewer(SceneOfRun(RunPaths(run.folder), run.curves), run.name);
   } catch (const InputError& error) {
     page->Add("<p>No viewer: " + HtmlEscaped(error.what()) + "</p>\n");
   }

@@ -42,7 +42,7 @@ std::string PackedArrays::Text() const {
   uLongf size = compressBound(bytes_.size());
   std::vector<std::uint8_t> deflated(size);
   compress2(deflated.data(), &size, bytes_.data(), bytes_.size(),
-            Z_BEST_COMPRESSION);
+            Z_DEFAULT_COMPRESSION);
   return Base64(deflated.data(), size);
 }
 

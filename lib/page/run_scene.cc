@@ -10,6 +10,7 @@
 #include "splitfusion/lib/evaluation/recorded_run.h"
 #include "splitfusion/lib/geometry/stretched_area.h"
 #include "splitfusion/lib/page/packed_arrays.h"
+#include "splitfusion/lib/page/scene_fields.h"
 #include "splitfusion/lib/page/scene_mesh.h"
 #include "splitfusion/lib/sequence/calibration.h"
 #include "splitfusion/lib/visibility/seen_triangles.h"
@@ -20,10 +21,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Values = std::vector<std::int32_t>;
 
-constexpr int kVertices = 30000;           // Layout. Of a surface.
-constexpr double kUnit = 1e-4;             // Layout. Of places, metres.
-constexpr double kRotationUnit = 2.5e-4;   // Layout. Of a unit quaternion.
-constexpr double kWeightUnit = 1.0 / 255;  // Layout. Of weights of Eq. 3.
+constexpr int kVertices = 30000;            // Layout. Of a surface.
+constexpr double kUnit = 1e-4;              // Layout. Of places, metres.
+constexpr double kRotationUnit = 2.5e-4;    // Layout. Of a unit quaternion.
+constexpr double kWeightUnit = 1.0 / 2047;  // Layout. Of weights of Eq. 3.
 
 std::int32_t InUnits(double value, double unit) {
   return static_cast<std::int32_t>(std::lround(value / unit));
@@ -178,25 +179,58 @@ Json ArraysOf(const SceneSurface& surface, const std::vector<int>& frames,
   };
 }
 
+/// Where each of some frames is in the scene.
+std::vector<int> PlacesOf(const std::vector<int>& some,
+                          const std::vector<int>& frames,
+                          const std::string& name) {
+  std::vector<int> places;
+  for (const int frame : some) {
+    const auto found = std::lower_bound(frames.begin(), frames.end(), frame);
+    if (found == frames.end() || *found != frame) {
+      throw InputError("surface " + name + " is known in frame " +
+                       std::to_string(frame) +
+                       ": expected frames of frames.jsonl");
+    }
+    places.push_back(static_cast<int>(found - frames.begin()));
+  }
+  return places;
+}
+
+/// Packs the fields of a surface; `about`: what is known of fields of any.
+Json PackFields(const std::vector<NodeField>& fields, const std::string& name,
+                const std::vector<int>& frames, int nodes, Json* about,
+                Json* where, PackedArrays* arrays) {
+  Json packed = Json::object();
+  for (const NodeField& field : fields) {
+    (*about)[field.name] = {{"title", field.title}, {"top", field.top}};
+    (*where)[field.name] = arrays->Add(field.values, nodes);
+    packed[field.name] = {{"frames", PlacesOf(field.frames, frames, name)},
+                          {"holds", field.holds},
+                          {"unit", NodeField::kUnit},
+                          {"top", field.top}};
+  }
+  return packed;
+}
+
 /// A surface as the viewer reads it. `curves`: its own.
 Json SurfaceOf(const RecordedSurface& recorded, const SurfaceCurves& curves,
-               const std::vector<int>& frames, PackedArrays* arrays) {
+               const std::vector<int>& frames,
+               const std::vector<NodeField>& fields, Json* about,
+               PackedArrays* arrays) {
   SceneSurface surface{
       recorded, SimplifiedMesh(recorded.mesh, kVertices), {}, {}};
   surface.skinning = SkinningIndex(recorded.graph, recorded.neighbors_per_point)
                          .Skin(surface.smaller.mesh.vertices);
+  std::vector<int> own;
   for (const FrameMotions& motions : recorded.motions.frames) {
-    const auto found =
-        std::lower_bound(frames.begin(), frames.end(), motions.frame);
-    if (found == frames.end() || *found != motions.frame) {
-      throw InputError("surface " + curves.name + " has motions for frame " +
-                       std::to_string(motions.frame) +
-                       ": expected frames of frames.jsonl");
-    }
-    surface.places.push_back(static_cast<int>(found - frames.begin()));
+    own.push_back(motions.frame);
   }
+  surface.places = PlacesOf(own, frames, curves.name);
   const int per_vertex =
       std::min(recorded.graph.size(), recorded.neighbors_per_point);
+  Json where = ArraysOf(surface, frames, per_vertex, arrays);
+  const Json packed = PackFields(fields, curves.name, frames,
+                                 recorded.graph.size(), about, &where, arrays);
   return {{"name", curves.name},
           {"states", curves.states},
           {"unit", kUnit},
@@ -205,7 +239,8 @@ Json SurfaceOf(const RecordedSurface& recorded, const SurfaceCurves& curves,
           {"per_vertex", per_vertex},
           {"nodes", recorded.graph.size()},
           {"frames", surface.places},
-          {"arrays", ArraysOf(surface, frames, per_vertex, arrays)}};
+          {"fields", packed},
+          {"arrays", where}};
 }
 
 /// Poses of the camera by frame.
@@ -237,18 +272,18 @@ double FieldOfView(const RunPaths& paths) {
 
 RunScene SceneOfRun(const RunPaths& paths, const RunCurves& curves) {
   PackedArrays arrays;
-  Json surfaces = Json::array();
+  Json surfaces = Json::array(), fields = Json::object();
   for (const SurfaceCurves& surface : curves.surfaces) {
     const RecordedSurface recorded =
         ReadRecordedSurface(paths.root() + "/surfaces/" + surface.name);
-    surfaces.push_back(SurfaceOf(recorded, surface, curves.frames, &arrays));
+    surfaces.push_back(SurfaceOf(recorded, surface, curves.frames,
+                                 FieldsOf(paths, recorded), &fields, &arrays));
   }
   RunScene scene;
-  scene.header = {{"run", paths.root()},
-                  {"frames", curves.frames},
+  scene.header = {{"frames", curves.frames},
                   {"poses", PosesOf(paths, curves.frames.size())},
                   {"fov", FieldOfView(paths)},
-                  {"fields", Json::object()},
+                  {"fields", fields},
                   {"surfaces", surfaces}};
   scene.arrays = arrays.Text();
   return scene;

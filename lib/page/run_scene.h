@@ -12,7 +12,7 @@ namespace splitfusion {
 
 /// What the viewer of a page plays.
 struct RunScene {
-  /// {"run", "frames", "poses" ([x, y, z, qx, qy, qz, qw] of the camera in the
+  /// {"frames", "poses" ([x, y, z, qx, qy, qz, qw] of the camera in the
   /// world, by frame), "fov" (degrees, vertical), "fields", "surfaces"}.
   nlohmann::ordered_json header;
   std::string arrays;  ///< PackedArrays::Text()

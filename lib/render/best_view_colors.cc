@@ -58,13 +58,6 @@ Eigen::Vector2f Nowhere() {
   return Eigen::Vector2f::Constant(std::numeric_limits<float>::quiet_NaN());
 }
 
-/// The node that moves a point most.
-int StrongestNode(const Skinning& skinning) {
-  const auto begin = skinning.weights.begin();
-  return skinning
-      .nodes[std::max_element(begin, begin + skinning.count) - begin];
-}
-
 /// That of vertices; one for all of a rigid surface.
 std::vector<Skinning> SkinningOfAll(const SurfaceModel& model,
                                     int neighbors_per_point) {
@@ -95,6 +88,13 @@ BestViewColors::BestViewColors(int surface, const SurfaceModel& model,
       vertices_(model.mesh.vertices.size()),
       graph_(model.graph),
       placed_(model.mesh.vertices.size()) {}
+
+int BestViewColors::NodeOf(std::size_t vertex) const {
+  const Skinning& skinning = SkinningOf(vertex);
+  const auto begin = skinning.weights.begin();
+  return skinning
+      .nodes[std::max_element(begin, begin + skinning.count) - begin];
+}
 
 void BestViewColors::Place(int frame) {
   motions_ = model_.history.Find(frame);
@@ -131,7 +131,7 @@ void BestViewColors::Add(const LiveView& live) {
     const Eigen::Vector2f before = vertex.pixel;
     vertex.pixel = pixel ? live.camera.Project(point) : Nowhere();
     if (!pixel || live.labels(pixel->y(), pixel->x()) != surface_ ||
-        !motions_->Saw(StrongestNode(SkinningOf(i)))) {
+        !motions_->Saw(NodeOf(i))) {
       return;
     }
     const float way =

@@ -52,6 +52,15 @@ class BestViewColors {
   /// depth, edges, colour and, by pixel, the surface in view, `labels`.
   void Add(const LiveView& live);
 
+  /// Id of the surface.
+  int surface() const { return surface_; }
+  /// Motions of the frame in hand; null: the surface has none for it.
+  const FrameMotions* motions() const { return motions_; }
+  /// Vertices as Place() left them, camera frame, metres.
+  const std::vector<Eigen::Vector3f>& placed() const { return placed_; }
+  /// The node that moves a vertex most.
+  int NodeOf(std::size_t vertex) const;
+
   /// Red, green, blue by vertex; those that no frame showed keep theirs.
   std::vector<std::array<std::uint8_t, 3>> Colors() const;
 

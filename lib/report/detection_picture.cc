@@ -10,7 +10,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr double kOpacity = 0.45;
+constexpr double kMaskOpacity = 0.45;
 
 void CheckSizes(const cv::Mat& color,
                 const std::vector<InstanceMask>& instances) {
@@ -25,8 +25,8 @@ void CheckSizes(const cv::Mat& color,
 
 void PaintMask(const cv::Mat& mask, const cv::Scalar& paint, cv::Mat* picture) {
   cv::Mat blended;
-  cv::addWeighted(*picture, 1 - kOpacity,
-                  cv::Mat(picture->size(), CV_8UC3, paint), kOpacity, 0,
+  cv::addWeighted(*picture, 1 - kMaskOpacity,
+                  cv::Mat(picture->size(), CV_8UC3, paint), kMaskOpacity, 0,
                   blended);
   blended.copyTo(*picture, mask);
   std::vector<std::vector<cv::Point>> outlines;

@@ -56,6 +56,10 @@ class RunPaths {
   /// digits, hyphens and dots become underscores, and the name ends after 64
   /// characters.
   std::string Surface(int id, const std::string& label) const;
+  /// RUN/surfaces/NNN_LABEL/residuals.h5
+  std::string Residuals(int id, const std::string& label) const {
+    return Surface(id, label) + "/residuals.h5";
+  }
   /// RUN/surfaces/NNN_LABEL/warped/FRAME.ply
   std::string WarpedMesh(int id, const std::string& label, int frame) const;
 

@@ -64,7 +64,7 @@ function optionsOf(chart, colors, width, group) {
   const names = chart.x_names;
   const axes = [
     {stroke, grid, ticks: grid, font: '11px sans-serif', size: 30},
-    {stroke, grid, ticks: grid, font: '11px sans-serif', size: 56},
+    {stroke, grid, ticks: grid, font: '11px sans-serif', size: 64},
   ];
   if (names) {
     axes[0].splits = () => names.map((_, i) => i);
@@ -114,17 +114,27 @@ function setCursor(plot, place) {
   plot.setCursor({left: plot.valToPos(place, 'x'), top: 0}, false);
 }
 
+/** Charts that were drawn, by group: they are zoomed together. */
+const drawn = new Map();
+
 /** Zooms about the cursor, or the middle. */
-function zoom(plot, factor) {
+function zoom(plot, factor, group) {
   const {min, max} = plot.scales.x;
   const at = plot.cursor.idx == null ? (min + max) / 2 :
                                        plot.data[0][plot.cursor.idx];
-  plot.setScale('x', {min: at - (at - min) * factor,
-                      max: at + (max - at) * factor});
+  const range = {min: at - (at - min) * factor, max: at + (max - at) * factor};
+  for (const other of drawn.get(group)) other.setScale('x', range);
+}
+
+/** Shows all there is. */
+function unzoom(group) {
+  for (const {data: [x], setScale} of drawn.get(group)) {
+    setScale('x', {min: x[0], max: x[x.length - 1]});
+  }
 }
 
 /** What keys do: left and right the next position, + and - zoom, Escape all. */
-function onKey(event, plot, show) {
+function onKey(event, plot, group, show) {
   const x = plot.data[0];
   const step = {ArrowLeft: -1, ArrowRight: 1}[event.key];
   if (step) {
@@ -133,11 +143,11 @@ function onKey(event, plot, show) {
     setCursor(plot, place);
     show(place);
   } else if (event.key === '+' || event.key === '=') {
-    zoom(plot, 1 / 2);
+    zoom(plot, 1 / 2, group);
   } else if (event.key === '-') {
-    zoom(plot, 2);
+    zoom(plot, 2, group);
   } else if (event.key === 'Escape') {
-    plot.setScale('x', {min: x[0], max: x[x.length - 1]});
+    unzoom(group);
   } else {
     return;
   }
@@ -152,13 +162,15 @@ function draw(figure, chart, colors) {
       optionsOf(chart, colors, place.clientWidth, chart.group), rowsOf(chart),
       place);
   figure.plot = plot;
+  drawn.set(chart.group, [...(drawn.get(chart.group) ?? []), plot]);
   const show = x => chart.frames && showFrame(chart.group, x, figure);
   new ResizeObserver(() => {
     if (place.clientWidth > 0) {
       plot.setSize({width: place.clientWidth, height: 190});
     }
   }).observe(place);
-  figure.addEventListener('keydown', event => onKey(event, plot, show));
+  figure.addEventListener('keydown', event => onKey(event, plot, chart.group, show));
+  plot.over.addEventListener('dblclick', () => unzoom(chart.group));
   plot.over.addEventListener('click', () => {
     if (plot.cursor.idx != null) show(plot.data[0][plot.cursor.idx]);
   });

@@ -115,23 +115,21 @@ export class SurfaceView {
     if (!field && this.painted === 'color') return;
     this.painted = field ? mode : 'color';
     const color = this.mesh.geometry.attributes.color;
-    if (field) this.#paintField(field, index, color.array);
+    if (field) this.#paintField(field, mode, index, color.array);
     else color.array.set(this.colors);
     color.needsUpdate = true;
   }
 
-  /** Colours by a value of the nodes in the last frame that has it. */
-  #paintField(field, index, out) {
+  /** Colours by a value of the nodes, if need be that of an earlier frame. */
+  #paintField(field, mode, index, out) {
     const {nodes} = this.surface;
-    let row = -1;
-    while (row + 1 < field.frames.length && field.frames[row + 1] <= index) {
-      ++row;
-    }
+    const row = field.frames.findLastIndex(
+        frame => field.holds ? frame <= index : frame === index);
     if (row < 0) {
       this.values.fill(NaN);
     } else {
       blendValues(this.surface,
-                  this.surface[field.array].subarray(
+                  this.surface[mode].subarray(
                       row * nodes, (row + 1) * nodes), this.values);
     }
     for (let i = 0; i < this.values.length; ++i) {
