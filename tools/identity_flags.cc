@@ -241,6 +241,7 @@ RunIdentity IdentityFromFlags(const ImageFolderReader& reader,
 std::string IdentityText(const RunIdentity& identity) {
   const nlohmann::ordered_json json = {{"identity", identity.Hash()},
                                        {"identity_parts", identity.parts},
+                                       {"defaults", identity.defaults},
                                        {"outputs", identity.outputs}};
   return JsonText(json, 1) + "\n";
 }

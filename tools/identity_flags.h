@@ -26,7 +26,7 @@ NamedValues InputParts(const ImageFolderReader& reader);
 RunIdentity IdentityFromFlags(const ImageFolderReader& reader,
                               const TermRegistry& terms);
 
-/// {"identity", "identity_parts", "outputs"}, for programs.
+/// {"identity", "identity_parts", "defaults", "outputs"}, for programs.
 std::string IdentityText(const RunIdentity& identity);
 
 }  // namespace splitfusion

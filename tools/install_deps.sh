@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building, testing and running need on Debian 12. Run as root, or
 # as a user with sudo. Says what it installs; a second run finds all in place.
+#   install_deps.sh [--tests]    with a browser, in which tests look at pages
 set -euo pipefail
 
 packages=(
@@ -11,6 +12,9 @@ packages=(
   libxxhash-dev libhdf5-dev zlib1g-dev libmeshoptimizer-dev
   libgtest-dev libgmock-dev libbenchmark-dev doxygen python3-onnx
 )
+if [[ "${1:-}" == --tests ]]; then
+  packages+=(chromium)
+fi
 # The programs of report pages; a node of another origin has its own npm.
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)

@@ -31,7 +31,7 @@ step "sf_evaluate --run=$run --ground_truth=$sequence/gt"
 cat <<END
 
 The result is in $run:
-  report.html                    charts and tables; open it in a browser
+  report.html                    charts, and the surfaces in 3D; open it in a browser
   summary.json, evaluation.json  figures of the run, errors against ground truth
   trajectory.txt                 camera poses, TUM format
   surfaces/*/mesh.ply            one mesh a surface; surfaces/*/warped/: in motion

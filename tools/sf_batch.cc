@@ -13,6 +13,7 @@
 
 #include "batch_terminal.h"
 #include "interruption.h"
+#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/experiment/foreign_results.h"
 #include "splitfusion/lib/experiment/outdated_runs.h"
@@ -23,6 +24,7 @@
 #include "splitfusion/lib/experiment/row_file.h"
 #include "splitfusion/lib/experiment/sequence_list.h"
 #include "splitfusion/lib/experiment/sweep.h"
+#include "splitfusion/lib/experiment/sweep_page.h"
 #include "tool_main.h"
 
 DEFINE_string(sequences, "", "Folders or list files (one folder a line).");
@@ -204,6 +206,10 @@ bool Collect(const std::string& baseline_flag) {
                                     TerminalWidth());
   }
   WriteSqlite(folder.Below("results.sqlite"), files);
+  const std::string page =
+      SweepPage(folder, table, groups, {files.begin() + 1, files.end()});
+  WriteFileAtomically(folder.Below("report.html"),
+                      [&](std::ostream& out) { out << page; });
   return !WarnOfOutdated(table);
 }
 

@@ -11,12 +11,15 @@
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/experiment/child_process.h"
+#include "splitfusion/lib/experiment/scratch_folder.h"
 #include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/page/svg_chart.h"
 #include "tool_main.h"
 
 DEFINE_string(output, "", "Page to write, FILE.html.");
-DEFINE_string(figures, "", "Folder for the curves, one SVG file each.");
+DEFINE_string(figures, "", "Folder for the curves, one file each.");
+DEFINE_string(figure_format, "svg", "Of --figures: svg, or pdf as well.");
 DEFINE_string(media, "auto",
               "Pictures, surfaces in 3D: auto (of one run alone), all, none.");
 
@@ -27,9 +30,24 @@ namespace fs = std::filesystem;
 
 constexpr char kUsage[] =
     "Writes one self-contained page about runs that have ended: summary,\n"
-    "evaluation, options, curves over the frames, states and pictures; of "
-    "several\nruns a table that compares them.\n"
+    "evaluation, options, surfaces in 3D, curves over the frames, states and\n"
+    "pictures; of several runs a table and curves that compare them. A folder\n"
+    "of sf_solve adds its profiles.\n"
     "  sf_report RUN... --output=FILE.html [--figures=DIR]\n";
+
+/// Makes PATH.pdf of PATH.svg.
+void WritePdf(const std::string& path) {
+  WritePathAtomically(path + ".pdf", [&](const std::string& temporary) {
+    const ScratchFolder scratch;
+    const ChildResult result =
+        RunChild({"/usr/bin/env", "rsvg-convert", "--format=pdf",
+                  "--output=" + temporary, path + ".svg"},
+                 scratch.path() + "/rsvg-convert");
+    if (result.exit_code == 0) return;
+    throw InputError("--figure_format=pdf: " + result.LastLine() +
+                     ": expected rsvg-convert (Debian's librsvg2-bin)");
+  });
+}
 
 /// The curves of a run as files: RUN_seconds.svg, RUN_NNN_LABEL_cost.svg, ...
 int WriteFigures(const ReportedRun& run, const fs::path& folder) {
@@ -39,8 +57,9 @@ int WriteFigures(const ReportedRun& run, const fs::path& folder) {
   const auto write = [&](const std::string& name, const CurveGroup& group) {
     const std::string svg = SvgFile(SvgChart(
         {group.title, group.series, {}, group.stacked, run.curves.frames}));
-    WriteFileAtomically((folder / (prefix + "_" + name + ".svg")).string(),
-                        [&](std::ostream& out) { out << svg; });
+    const std::string path = (folder / (prefix + "_" + name)).string();
+    WriteFileAtomically(path + ".svg", [&](std::ostream& out) { out << svg; });
+    if (FLAGS_figure_format == "pdf") WritePdf(path);
     ++written;
   };
   write("seconds", run.curves.seconds);
@@ -52,38 +71,82 @@ int WriteFigures(const ReportedRun& run, const fs::path& folder) {
   return written;
 }
 
-/// The runs, by the names of their folders; by their whole paths if two have
-/// the same.
+/// Paths without the folders that all of them begin and end with.
+std::vector<std::string> ShortNames(const std::vector<fs::path>& paths) {
+  std::vector<std::vector<std::string>> parts;
+  for (const fs::path& path : paths) {
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    parts.emplace_back(whole.begin(), whole.end());
+  }
+  // Whether all agree in the part that `at` takes, and have others.
+  const auto agree = [&](const auto& at) {
+    return std::all_of(parts.begin(), parts.end(), [&](const auto& one) {
+      return one.size() > 1 && at(one) == at(parts.front());
+    });
+  };
+  while (agree([](const auto& one) { return one.front(); })) {
+    for (auto& one : parts) one.erase(one.begin());
+  }
+  while (agree([](const auto& one) { return one.back(); })) {
+    for (auto& one : parts) one.pop_back();
+  }
+  std::vector<std::string> names;
+  for (const auto& one : parts) {
+    fs::path name;
+    for (const std::string& part : one) name /= part;
+    names.push_back(name.string());
+  }
+  return names;
+}
+
+/// The runs, by the names of their folders; if two have the same, by what tells
+/// their paths apart.
 std::vector<ReportedRun> ReadRuns(const std::vector<std::string>& folders) {
   std::vector<ReportedRun> runs;
+  std::vector<fs::path> paths;
   std::set<std::string> names;
   for (const std::string& folder : folders) {
     // Without a slash at the end a folder has a name.
-    const fs::path path = (fs::path(folder) / "").parent_path();
-    runs.push_back(ReadReportedRun(RunPaths(path.string())));
+    paths.push_back((fs::path(folder) / "").parent_path());
+    runs.push_back(ReadReportedRun(RunPaths(paths.back().string())));
     names.insert(runs.back().name);
   }
   if (names.size() == runs.size()) return runs;
-  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name = folders[i];
+  const std::vector<std::string> apart = ShortNames(paths);
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name = apart[i];
   return runs;
 }
 
-int Run(const std::vector<std::string>& folders) {
+void WritePage(const std::vector<ReportedRun>& runs,
+               const std::vector<std::string>& solver_folders) {
+  std::vector<ReportedSolvers> solvers;
+  for (const std::string& folder : solver_folders) {
+    solvers.push_back(ReadReportedSolvers(folder));
+  }
+  const bool media =
+      FLAGS_media == "auto" ? runs.size() == 1 : FLAGS_media == "all";
+  const std::string page = HtmlReport(runs, {media, media}, solvers);
+  WriteFileAtomically(FLAGS_output, [&](std::ostream& out) { out << page; });
+  std::cout << FLAGS_output << ": " << runs.size()
+            << (runs.size() == 1 ? " run\n" : " runs\n");
+}
+
+int Run(std::vector<std::string> folders) {
   CheckOption(!folders.empty(), "RUN", folders.size(),
               "one run directory or more");
   CheckOption(!FLAGS_output.empty() || !FLAGS_figures.empty(), "output", "''",
               "a file to write, or --figures");
+  CheckOption(FLAGS_figure_format == "svg" || FLAGS_figure_format == "pdf",
+              "figure_format", FLAGS_figure_format, "svg or pdf");
   CheckOption(
       FLAGS_media == "auto" || FLAGS_media == "all" || FLAGS_media == "none",
       "media", FLAGS_media, "auto, all or none");
-  const std::vector<ReportedRun> runs = ReadRuns(folders);
+  const auto solved =
+      std::stable_partition(folders.begin(), folders.end(),
+                            [](const auto& one) { return !IsOfSolvers(one); });
+  const std::vector<ReportedRun> runs = ReadRuns({folders.begin(), solved});
   if (!FLAGS_output.empty()) {
-    const bool media =
-        FLAGS_media == "auto" ? runs.size() == 1 : FLAGS_media == "all";
-    const std::string page = HtmlReport(runs, {media, media});
-    WriteFileAtomically(FLAGS_output, [&](std::ostream& out) { out << page; });
-    std::cout << FLAGS_output << ": " << runs.size()
-              << (runs.size() == 1 ? " run\n" : " runs\n");
+    WritePage(runs, {solved, folders.end()});
   }
   if (!FLAGS_figures.empty()) {
     fs::create_directories(FLAGS_figures);

@@ -184,12 +184,20 @@ void AddRun(const ReportedRun& run, const ReportContent& content, bool brief,
 }  // namespace
 
 std::string HtmlReport(const std::vector<ReportedRun>& runs,
-                       const ReportContent& content) {
+                       const ReportContent& content,
+                       const std::vector<ReportedSolvers>& solvers) {
   HtmlPage page;
   page.Add("<h1>SplitFusion report</h1>\n");
   if (runs.size() > 1) AddComparison(runs, &page);
   for (const ReportedRun& run : runs) {
     AddRun(run, content, runs.size() > kFullRuns, &page);
+  }
+  for (const ReportedSolvers& one : solvers) {
+    page.Add("<h2>" + HtmlEscaped(one.name) + "</h2>\n<div class=\"charts\">");
+    for (const std::string& figure : one.figures) {
+      page.Add("<figure class=\"paper\">" + figure + "</figure>\n");
+    }
+    page.Add("</div>\n");
   }
   return page.Text();
 }

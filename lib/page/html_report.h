@@ -20,11 +20,12 @@ struct ReportContent {
 /// charts that compare them, of each its summary, evaluation, energy and
 /// options (those first that differ from their defaults), its surfaces in 3D,
 /// states and decisions, pictures, and of up to four runs its curves over the
-/// frames (lost frames and costs that are not finite are marked red). Numbers
-/// are rounded for people. Where the project was built without node, charts are
-/// drawings, and there is no viewer.
+/// frames (lost frames and costs that are not finite are marked red); at the
+/// end the figures of `solvers`. Numbers are rounded for people. Where the
+/// project was built without node, charts are drawings, and there is no viewer.
 std::string HtmlReport(const std::vector<ReportedRun>& runs,
-                       const ReportContent& content = {});
+                       const ReportContent& content = {},
+                       const std::vector<ReportedSolvers>& solvers = {});
 
 /// Writes RUN/report.html. `summary`: the value of summary.json.
 ///

@@ -1,7 +1,10 @@
 #include "splitfusion/lib/page/reported_run.h"
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
+#include <utility>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
@@ -72,6 +75,28 @@ ReportedRun ReadReportedRun(const RunPaths& paths) {
         paths.Frames() +
         ": not as a run of this version writes it: " + error.what());
   }
+}
+
+bool IsOfSolvers(const std::string& folder) {
+  return std::filesystem::exists(std::filesystem::path(folder) / "solvers.csv");
+}
+
+ReportedSolvers ReadReportedSolvers(const std::string& folder) {
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".svg") files.insert(entry.path().string());
+  }
+  ReportedSolvers solvers{std::filesystem::path(folder).filename().string(),
+                          {}};
+  for (const std::string& file : files) {
+    std::ifstream stream(file);
+    std::string svg{std::istreambuf_iterator<char>(stream), {}};
+    if (svg.rfind("<svg", 0) != 0) {
+      throw InputError(file + ": expected a figure of sf_solve, <svg ...");
+    }
+    solvers.figures.push_back(std::move(svg));
+  }
+  return solvers;
 }
 
 }  // namespace splitfusion

@@ -31,6 +31,21 @@ ReportedRun ReadReportedRun(const RunPaths& paths);
 ReportedRun ReportedRunOf(const RunPaths& paths,
                           const nlohmann::ordered_json& summary);
 
+/// What is shown of solvers that were compared.
+struct ReportedSolvers {
+  std::string name;  ///< Heading.
+  std::vector<std::string>
+      figures;  ///< SVG: performance profiles and the like.
+};
+
+/// Whether a folder was written by sf_solve.
+bool IsOfSolvers(const std::string& folder);
+
+/// Reads one.
+///
+/// @throw InputError if a figure cannot be read.
+ReportedSolvers ReadReportedSolvers(const std::string& folder);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_PAGE_REPORTED_RUN_H_

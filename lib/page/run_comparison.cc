@@ -73,7 +73,8 @@ void AddOverRuns(const std::vector<ReportedRun>& runs,
   for (const ReportedRun& run : runs) {
     const CurveGroup* group = group_of(run);
     if (group == nullptr) continue;
-    chart.title = group->title;
+    // Of parts of a whole their sum is shown.
+    chart.title = group->title.substr(0, group->title.find(", by "));
     chart.series.push_back(
         {run.name, WholeOf(*group, run.curves.frames, frames)});
   }

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/base/base64.h"
+#include "splitfusion/lib/page/page_bundle.h"
 #include "splitfusion/lib/page/svg_chart.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "support/expect_input_error.h"
@@ -188,6 +189,49 @@ TEST(Base64, IsThatOfTheStandard) {
   EXPECT_EQ(text("foo"), "Zm9v");
   EXPECT_EQ(text("foobar"), "Zm9vYmFy");
   EXPECT_EQ(text("\xff\xfe\xfd"), "//79");
+}
+
+TEST_F(HtmlReportTest, LetsOnlyItsOwnProgramsAndStyleThrough) {
+  const std::string html = folder_.Read("run/report.html");
+  EXPECT_TRUE(Contains(html, "style-src 'sha256-"));
+  EXPECT_FALSE(Contains(html, "unsafe-inline"));
+  EXPECT_FALSE(Contains(html, " style=\""));
+  if (!ChartProgram().text.empty()) {
+    EXPECT_TRUE(Contains(html, "script-src 'sha256-"));
+  }
+}
+
+TEST_F(HtmlReportTest, OptionsThatDifferFromTheDefaultsComeFirst) {
+  ReportedRun run = ReadReportedRun(RunPaths(folder_ / "run"));
+  run.options = {{"a", "1"}, {"b", "2"}, {"c", "3"}};
+  run.defaults = {{"b", "20"}, {"c", ""}};
+  const std::string html = HtmlReport({run});
+  EXPECT_TRUE(Contains(html,
+                       "<tr><td>b</td><td>2</td><td>20</td></tr>\n"
+                       "<tr><td>c</td><td>3</td><td>-</td></tr>"));
+  EXPECT_TRUE(Contains(html, "<th>a</th><td>1</td>"));
+}
+
+TEST_F(HtmlReportTest, SaysWhyThereIsNoViewer) {
+  // The run of this test has no surfaces/ of its own.
+  EXPECT_TRUE(Contains(folder_.Read("run/report.html"), "No viewer: "));
+  const ReportedRun run = ReadReportedRun(RunPaths(folder_ / "run"));
+  EXPECT_FALSE(Contains(HtmlReport({run}, {false, false}), "No viewer: "));
+}
+
+TEST_F(HtmlReportTest, ManyRunsAreDrawnOverOneAnotherAlone) {
+  ReportedRun run = ReadReportedRun(RunPaths(folder_ / "run"));
+  std::vector<ReportedRun> runs;
+  for (int k = 0; k < 5; ++k) {
+    run.name = "run " + std::to_string(k);
+    runs.push_back(run);
+  }
+  const std::string html = HtmlReport(runs, {false, false});
+  // Seconds, and seven quantities of two surfaces.
+  EXPECT_EQ(Count(html, "<figure class=\"chart\""), 15u);
+  EXPECT_TRUE(Contains(html, "{\"name\":\"run 4\",\"values\":[0.125,0.125,"));
+  const std::string few = HtmlReport({runs[0], runs[1]}, {false, false});
+  EXPECT_EQ(Count(few, "<figure class=\"chart\""), 45u);
 }
 
 }  // namespace

@@ -9,72 +9,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/plate_views.h"
 #include "splitfusion/lib/base/pi.h"
-#include "support/sample_depth.h"
-#include "support/sample_graphs.h"
-#include "support/sample_meshes.h"
 
 namespace splitfusion {
 namespace {
 
-using Color = std::array<std::uint8_t, 3>;
-
-constexpr int kSurface = 3;
-constexpr Color kFused = {10, 20, 30};
 const cv::Vec3b kBlue(255, 0, 0);
 const cv::Vec3b kGreen(0, 255, 0);
-
-/// A plate of 30 by 20 cm amid the view at 1 m.
-SurfaceModel Plate(double step = 0.025) {
-  SurfaceModel model;
-  model.mesh = PlateMesh(0.3, 0.2, step, 1);
-  for (Eigen::Vector3f& v : model.mesh.vertices) {
-    v -= Eigen::Vector3f(0.15f, 0.1f, 0);
-  }
-  model.mesh.normals = ComputeVertexNormals(model.mesh);
-  model.mesh.colors.assign(model.mesh.vertices.size(), kFused);
-  model.graph = CoverWithNodes(model.mesh, 0.05);
-  return model;
-}
-
-/// Moves the plate in a frame, in which all of it is seen.
-void AddFrame(int frame, const Rigid3d& motion, SurfaceModel* model) {
-  DeformationGraph graph = model->graph;
-  ApplyRigidMotion(motion, &graph);
-  model->history.frames.push_back(
-      {frame, true, graph.motions, std::vector<char>(graph.size(), true)});
-}
-
-/// A view of one colour, all of whose pixels show the surface.
-LiveView View(const cv::Mat_<float>& depth, const cv::Vec3b& bgr) {
-  LiveView live =
-      MakeLiveView(SmallCamera(), depth, PlainColor(SmallCamera(), bgr));
-  live.labels.setTo(kSurface);
-  return live;
-}
 
 /// Takes colours from a frame.
 void Add(int frame, const LiveView& live, BestViewColors* colors) {
   colors->Place(frame);
   colors->Add(live);
-}
-
-/// What the camera sees of the plate in a frame, before a wall, all in one
-/// colour.
-LiveView See(const SurfaceModel& model, std::size_t index,
-             const cv::Vec3b& bgr) {
-  DeformationGraph graph = model.graph;
-  graph.motions = model.history.frames[index].motions;
-  const WarpField warp(graph);
-  const SkinningIndex skinning(graph, 4);
-  TriangleMesh mesh = model.mesh;
-  for (Eigen::Vector3f& v : mesh.vertices) {
-    v = warp.WarpPoint(skinning.Skin(v), v);
-  }
-  const PinholeCamera camera = SmallCamera();
-  cv::Mat_<float> depth = MeshDepth(camera, mesh);
-  depth.setTo(3, depth == 0);
-  return View(depth, bgr);
 }
 
 /// Index of the vertex nearest to the middle.
@@ -96,8 +43,6 @@ Color ColorOf(const SurfaceModel& model, const std::vector<cv::Vec3b>& bgr) {
   }
   return colors.Colors()[Middle(model)];
 }
-
-Rigid3d Away(double metres) { return MakeMotion({0, 0, 0}, {0, 0, metres}); }
 
 /// Turned about the vertical axis through its middle.
 Rigid3d Turned(double degrees) {

@@ -245,6 +245,9 @@ TEST_F(Resume, SetChangesOneNumberAndIsResolved) {
   const Json identity = Json::parse(printed.output);
   EXPECT_EQ(identity["identity_parts"]["terms.arap.weight"], "4");
   EXPECT_EQ(identity["identity_parts"]["object_voxel"], "0.006");
+  EXPECT_EQ(identity["defaults"]["terms.arap.weight"], "8");
+  EXPECT_EQ(identity["defaults"]["object_voxel"], "0.005");
+  EXPECT_FALSE(identity["defaults"].contains("background_voxel"));
   // Where something is, and what is kept, do not decide the result.
   for (const char* flag : {"output", "sequence", "threads", "from",
                            "keep_checkpoints", "warped_every"}) {

@@ -69,12 +69,43 @@ TEST_F(SfReport, OfTwoRunsComparesThemAndWritesFigures) {
   EXPECT_GT(files, 2 * (1 + 7));
 }
 
+TEST_F(SfReport, PlaysSurfacesOnlyWhereTheyAreAskedFor) {
+  Synthesize("--frames=4");
+  MakeRun("run");
+  const auto size = [&](const std::string& media) {
+    EXPECT_EQ(Report((folder_ / "run") + " --media=" + media +
+                     " --output=" + (folder_ / "page.html"))
+                  .exit_code,
+              0);
+    return folder_.Read("page.html").size();
+  };
+  const std::size_t none = size("none");
+  EXPECT_THAT(folder_.Read("page.html"), Not(HasSubstr("data:image")));
+  EXPECT_GT(size("all"), none);
+}
+
+TEST_F(SfReport, ShowsTheFiguresOfSolvers) {
+  folder_.Write("solved/solvers.csv", "problem\n");
+  folder_.Write("solved/profile.svg", "<svg><text>a profile</text></svg>");
+  const std::string command =
+      (folder_ / "solved") + " --output=" + (folder_ / "page.html");
+  ASSERT_EQ(Report(command).exit_code, 0);
+  EXPECT_THAT(folder_.Read("page.html"), HasSubstr("a profile"));
+  folder_.Write("solved/profile.svg", "<script>");
+  ExpectRefused("sf_report", command, "profile.svg");
+}
+
 TEST_F(SfReport, SaysWhatIsWrong) {
   const std::string page = " --output=" + (folder_ / "page.html");
   ExpectRefused("sf_report", page, "RUN");
   ExpectRefused("sf_report", folder_ / "nothing", "output");
   ExpectRefused("sf_report", (folder_ / "nothing") + page,
                 "nothing/summary.json");
+  ExpectRefused("sf_report", (folder_ / "nothing") + page + " --media=some",
+                "media");
+  ExpectRefused("sf_report",
+                (folder_ / "nothing") + page + " --figure_format=png",
+                "figure_format");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "page.html"));
 }
 

@@ -11,6 +11,12 @@ export function rounded(value) {
   return String(Number(value.toPrecision(4)));
 }
 
+/** A number beside an axis. */
+export function tick(value) {
+  return Math.abs(value) < 1e5 ? String(Number(value.toPrecision(3))) :
+                                 value.toExponential().replace('e+', 'e');
+}
+
 /** Running sums over the series; what has no value adds nothing. */
 export function stackedSums(rows) {
   const sums = [];
@@ -64,7 +70,8 @@ function optionsOf(chart, colors, width, group) {
   const names = chart.x_names;
   const axes = [
     {stroke, grid, ticks: grid, font: '11px sans-serif', size: 30},
-    {stroke, grid, ticks: grid, font: '11px sans-serif', size: 64},
+    {stroke, grid, ticks: grid, font: '11px sans-serif', size: 64,
+     values: (plot, places) => places.map(tick)},
   ];
   if (names) {
     axes[0].splits = () => names.map((_, i) => i);
@@ -85,12 +92,16 @@ function optionsOf(chart, colors, width, group) {
           rounded(at == null ? null : chart.series[s].values[at]),
     };
   });
+  // Error bars belong to what is seen.
+  const top = Math.max(...chart.series.flatMap(
+      ({values, spread = []}) =>
+          spread.map((half, i) => (values[i] ?? 0) + (half ?? 0))));
   const marks = chart.marks.map(i => chart.x[i]);
   return {
     width, height: 190, title: chart.title,
     scales: {x: {time: false, range: names ? [-.5, names.length - .5] : null},
              y: {range: (plot, low, high) =>
-                     [Math.min(0, low), high > 0 ? high * 1.05 : 1]}},
+                     [Math.min(0, low), Math.max(high, top) * 1.05 || 1]}},
     axes,
     legend: {live: true},
     series: [{label: chart.x_title,
