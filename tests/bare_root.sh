@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export LC_ALL=C
 
-say() { echo "bare_root.sh: $(printf '%3d' $SECONDS) s: $1"; }
+say() { echo "bare_root.sh: $(printf '%3d' $SECONDS) s: $*"; }
 ((EUID == 0)) || { echo "bare_root.sh: must be run by root" >&2; exit 2; }
 build="$(realpath "${1:-build/release}")"
 [[ -f "$build/CPackConfig.cmake" ]] || {
@@ -60,11 +60,11 @@ for program in "$root/any where/bin"/*; do
   chroot "$root" "${program#"$root"}" --help >/dev/null ||
     { echo "bare_root.sh: $program does not start" >&2; exit 1; }
 done
-chroot "$root" "/any where/bin/sf_run" --sequence=/sequence --output=/run
+chroot "$root" "/any where/bin/sf_run" --sequence=/sequence --output=/result
 chroot "$root" "/any where/bin/sf_batch" run --sequences=/sequence \
   --output=/experiment
 for file in trajectory.txt surfaces/000_background/mesh.ply; do
-  cmp "$tmp/run/$file" "$root/run/$file"
+  cmp "$tmp/run/$file" "$root/result/$file"
   cmp "$tmp/run/$file" "$root"/experiment/tasks/*/run/"$file"
 done
 say "PASSED: $(ls "$root/any where/bin" | wc -l) programs start there, and the \

@@ -115,7 +115,8 @@ SlurmdTimeout=15
 KillWait=30
 MaxArraySize=4
 MailProg=/bin/true
-NodeName=node[1-3] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 3))] CPUs=1 RealMemory=4000
+NodeName=node[1-3] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 3))] \
+  CPUs=1 RealMemory=4000
 PartitionName=all Nodes=ALL Default=YES
 END
 }
@@ -187,7 +188,7 @@ requeue_one() {
   scontrol requeue "$job"
   say "requeued $task, job $job"
   wait_for 30 "the interrupted run" was_saved
-  grep -q '"interrupted after .* of 40 frames' "$out/tasks/$task/task.json" ||
+  grep -q 'interrupted after .* of 40 frames' "$out/tasks/$task/task.json" ||
     fail "sf_run did not say what it has saved"
   hit+=("$job $task")
   spared+=" $line"
