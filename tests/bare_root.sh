@@ -67,5 +67,6 @@ for file in trajectory.txt surfaces/000_background/mesh.ply; do
   cmp "$tmp/run/$file" "$root/result/$file"
   cmp "$tmp/run/$file" "$root"/experiment/tasks/*/run/"$file"
 done
-say "PASSED: $(ls "$root/any where/bin" | wc -l) programs start there, and the \
-results of sf_run and sf_batch are those of this machine"
+count="$(find "$root/any where/bin" -type f | wc -l)"
+say "PASSED: $count programs start there, and the results of sf_run and" \
+    "sf_batch are those of this machine"
