@@ -115,8 +115,8 @@ SlurmdTimeout=15
 KillWait=30
 MaxArraySize=4
 MailProg=/bin/true
-NodeName=node[1-3] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 3))] \
-  CPUs=1 RealMemory=4000
+NodeName=node[1-3] NodeHostname=$host NodeAddr=127.0.0.1 \
+  Port=[$((port + 1))-$((port + 3))] CPUs=1 RealMemory=4000
 PartitionName=all Nodes=ALL Default=YES
 END
 }
@@ -161,10 +161,12 @@ batch_of() {
 }
 
 # Name of a task by its line in the list.
-task_name() { sed -n "$1"'s/{"task":"\([^"]*\)".*/\1/p' "$out"/slurm/*.jsonl; }
+task_name() {
+  sed -n "$1"'s/{"task":"\([^"]*\)".*/\1/p' "$out"/slurm/*.jsonl
+}
 
-# Finds a job that has written a checkpoint: its $job, $node, process $batch, and
-# the $line and name of its $task. The tasks of the lines in $spared are no use.
+# Finds a job that has written a checkpoint: its $job, $node, process $batch,
+# and the $line and name of its $task. The tasks of the lines in $spared are no use.
 find_victim() {
   while read -r job node; do
     batch="$(batch_of "$job")" || continue
@@ -243,8 +245,9 @@ say "$(slurmctld -V), $(nproc) cores"
   --mesh_every=100 >/dev/null
 configure
 start_daemons
-say "3 slurmd are idle, $(unshare --uts echo 'each with a host name of its own' \
-  2>/dev/null || echo 'all with one host name')"
+names="$(unshare --uts echo "each with a host name of its own" 2>/dev/null ||
+         echo "all with one host name")"
+say "3 slurmd are idle, $names"
 submit
 spared=1
 hit=()

@@ -17,7 +17,7 @@ std::string WriteTaskList(const std::string& folder,
   std::string text;
   for (const Task& task : tasks) text += JsonText(ToJson(task)) + '\n';
   const std::string name = cv::format("tasks_%016lx.jsonl", StableHash(text));
-  const std::string path = (std::filesystem::path(folder) / name).string();
+  std::string path = (std::filesystem::path(folder) / name).string();
   if (std::filesystem::exists(path)) return path;
   WriteFileAtomically(path, [&](std::ostream& out) { out << text; });
   return path;

@@ -294,9 +294,9 @@ TEST_F(SweepTest, WaitsForTheLockOfARunWhoseComputerHasDied) {
   AddExperiment(ExperimentFolder(folder_.Make("out")), experiment_);
   const std::string run =
       "out/tasks/" + PlanTasks(experiment_)[0].name + "/run";
-  const std::string lock = folder_.Write(
-      run + "/lock",
-      R"({"id": "1", "host": "gone", "boot": "1", "pid": 1, "process_start": 1})");
+  const std::string lock =
+      folder_.Write(run + "/lock", R"({"id": "1", "host": "gone", "boot": "1",
+                                       "pid": 1, "process_start": 1})");
   // Two seconds before it counts as silent.
   fs::last_write_time(lock, fs::file_time_type::clock::now() -
                                 LockOptions().silence +
