@@ -13,7 +13,7 @@ install(DIRECTORY lib cost_functions pipelines
         PATTERN internal EXCLUDE)
 install(FILES "${SPLITFUSION_INCLUDE_DIR}/splitfusion/method_hash.h"
         DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/splitfusion")
-install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT tools)
 
 install(EXPORT splitfusionTargets NAMESPACE splitfusion::
         DESTINATION "${package_dir}")
@@ -32,3 +32,15 @@ install(FILES "${PROJECT_BINARY_DIR}/splitfusionConfig.cmake"
               "${PROJECT_BINARY_DIR}/splitfusionConfigVersion.cmake"
               cmake/LibraryDependencies.cmake
         DESTINATION "${package_dir}")
+
+# cpack: the programs as a tarball that can be unpacked anywhere, for machines
+# that have the libraries (docs/cluster.md) and no root.
+set(CPACK_GENERATOR TGZ)
+set(CPACK_COMPONENTS_ALL tools)
+set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENT_INCLUDE_TOPLEVEL_DIRECTORY ON)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_PACKAGE_FILE_NAME
+    "splitfusion-${PROJECT_VERSION}-${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR}")
+set(CPACK_VERBATIM_VARIABLES ON)
+include(CPack)

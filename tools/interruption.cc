@@ -31,8 +31,8 @@ void CatchInterruption(SecondSignal second) {
   for (const int signal : kSignals) {
     struct sigaction before = {};
     sigaction(signal, nullptr, &before);
-    // Under nohup it stays ignored.
-    if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;
+    // Under nohup SIGHUP stays ignored, under sf_batch SIGTERM.
+    if (signal != SIGINT && before.sa_handler == SIG_IGN) continue;
     sigaction(signal, &action, nullptr);
   }
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <initializer_list>
 #include <iostream>
 #include <map>
 #include <stdexcept>
@@ -15,6 +17,7 @@
 #include "interruption.h"
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/make_folder.h"
 #include "splitfusion/lib/experiment/foreign_results.h"
 #include "splitfusion/lib/experiment/outdated_runs.h"
 #include "splitfusion/lib/experiment/printed_table.h"
@@ -23,8 +26,10 @@
 #include "splitfusion/lib/experiment/result_table.h"
 #include "splitfusion/lib/experiment/row_file.h"
 #include "splitfusion/lib/experiment/sequence_list.h"
+#include "splitfusion/lib/experiment/slurm_array.h"
 #include "splitfusion/lib/experiment/sweep.h"
 #include "splitfusion/lib/experiment/sweep_page.h"
+#include "splitfusion/lib/experiment/task_list.h"
 #include "tool_main.h"
 
 DEFINE_string(sequences, "", "Folders or list files (one folder a line).");
@@ -57,6 +62,9 @@ DEFINE_string(foreign, "",
 DEFINE_string(run_program, "", "Another sf_run than the one beside sf_batch.");
 DEFINE_string(evaluate_program, "",
               "Another sf_evaluate than the one beside it.");
+DEFINE_int32(slurm_max_array, 1001, "MaxArraySize, of emit-slurm.");
+DEFINE_string(task_list, "", "List of emit-slurm, of which --task is run.");
+DEFINE_int32(task, 0, "Line of --task_list.");
 
 namespace splitfusion {
 namespace {
@@ -68,8 +76,9 @@ constexpr char kUsage[] =
     "[--jobs=N]\n"
     "  sf_batch status --output=DIR     what is done, what failed\n"
     "  sf_batch collect --output=DIR    tables: results.csv, results.sqlite\n"
+    "  sf_batch emit-slurm --output=DIR [...] | sh    the same by Slurm\n"
     "KEY: a flag of sf_run, or [CLASS.]terms.NAME.KEY. A value V with , or ;\n"
-    "in double quotes. See docs/experiments.md.\n";
+    "in double quotes. See docs/experiments.md, docs/cluster.md.\n";
 
 /// A program beside this one, unless a flag names another.
 std::string Program(const std::string& flag, const std::string& name) {
@@ -249,7 +258,43 @@ void CheckTables(const Experiment& experiment,
   }
 }
 
+/// Refuses flags that would have no effect.
+void RefuseFlags(const std::string& where,
+                 std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    const auto flag = gflags::GetCommandLineFlagInfoOrDie(name);
+    CheckOption(flag.is_default, name, flag.current_value,
+                "no such flag with " + where);
+  }
+}
+
+/// Runs tasks, and says how far it is.
+SweepOutcome ShowRuns(
+    const std::function<SweepOutcome(const SweepCallback&)>& run) {
+  ProgressLines lines;
+  const SweepOutcome outcome =
+      run([&](const SweepProgress& progress) { lines.Show(progress); });
+  lines.End();
+  return outcome;
+}
+
+/// @throw std::runtime_error if the runs were interrupted.
+int ExitCodeOf(const SweepOutcome& outcome, bool stopped) {
+  if (stopped) {
+    throw std::runtime_error(
+        "interrupted after " + std::to_string(outcome.ended) + " of " +
+        std::to_string(outcome.planned) +
+        " runs; the same command goes on with the experiment");
+  }
+  if (outcome.failed == 0) return kExitDone;
+  std::cerr << outcome.failed << " of " << outcome.planned
+            << " runs failed; see sf_batch status --output=" << FLAGS_output
+            << '\n';
+  return kExitFailedRuns;
+}
+
 int RunExperiment() {
+  RefuseFlags("run without --task_list", {"task"});
   const Experiment experiment = ExperimentFromFlags();
   SweepOptions options = SweepOptionsFromFlags(experiment);
   const std::vector<ForeignResult> foreign = ParseForeignResults(FLAGS_foreign);
@@ -264,25 +309,68 @@ int RunExperiment() {
     CheckRowFile();
     CatchInterruption(SecondSignal::kIsTold);
   };
-  ProgressLines lines;
-  const SweepOutcome outcome = RunSweep(
-      experiment, options,
-      [&](const SweepProgress& progress) { lines.Show(progress); }, WantedStop);
+  const SweepOutcome outcome = ShowRuns([&](const SweepCallback& progress) {
+    return RunSweep(experiment, options, progress, WantedStop);
+  });
   const bool stopped = Interrupted() && outcome.ended < outcome.planned;
-  lines.End();
   AddForeignResults(ExperimentFolder(FLAGS_output), foreign);
   Collect(experiment.baseline);
-  if (stopped) {
-    throw std::runtime_error(
-        "interrupted after " + std::to_string(outcome.ended) + " of " +
-        std::to_string(outcome.planned) +
-        " runs; the same command goes on with the experiment");
+  return ExitCodeOf(outcome, stopped);
+}
+
+/// What decides which tasks there are.
+constexpr std::initializer_list<const char*> kExperimentFlags = {
+    "sequences", "grid", "set",          "repeat",   "experiment", "rows",
+    "random",    "seed", "ground_truth", "evaluate", "baseline"};
+
+/// Runs one task of a list. Tables are left to `collect`: many do so at once.
+int RunListedTask() {
+  RefuseFlags("--task_list", kExperimentFlags);
+  RefuseFlags("--task_list", {"foreign", "rows_csv", "dry_run"});
+  const std::vector<Task> tasks = {ReadTaskOfList(FLAGS_task_list, FLAGS_task)};
+  SweepOptions options = SweepOptionsFromFlags(Experiment());
+  options.planned = [] { CatchInterruption(SecondSignal::kIsTold); };
+  const SweepOutcome outcome = ShowRuns([&](const SweepCallback& progress) {
+    return RunTasks(tasks, options, progress, WantedStop);
+  });
+  return ExitCodeOf(outcome, Interrupted() && outcome.ended == 0);
+}
+
+/// Whether the flags name an experiment; emit-slurm takes those of the folder
+/// otherwise.
+bool NameExperiment() {
+  return std::any_of(
+      kExperimentFlags.begin(), kExperimentFlags.end(), [](const char* name) {
+        return !gflags::GetCommandLineFlagInfoOrDie(name).is_default;
+      });
+}
+
+int EmitSlurm() {
+  RefuseFlags("emit-slurm", {"jobs", "fail_fast", "overwrite", "dry_run",
+                             "rows_csv", "foreign", "task_list", "task"});
+  SlurmArray array;
+  array.max_array = FLAGS_slurm_max_array;
+  array.Check();
+  const ExperimentFolder folder(FLAGS_output);
+  const bool adds = NameExperiment();
+  const Experiment experiment = adds ? ExperimentFromFlags() : Experiment();
+  SweepOptions options = SweepOptionsFromFlags(experiment);
+  // The cores of this machine tell nothing of those of the nodes.
+  options.threads = std::max(1, FLAGS_threads);
+  if (adds) CheckTables(experiment, {});
+  const std::vector<Task> tasks = UnfinishedTasks(
+      DryRun(adds ? PlanTasks(experiment) : KnownTasks(folder), options),
+      FLAGS_keep_failed);
+  if (adds) {
+    MakeFolder(FLAGS_output);
+    AddExperiment(folder, experiment);
   }
-  if (outcome.failed == 0) return kExitDone;
-  std::cerr << outcome.failed << " of " << outcome.planned
-            << " runs failed; see sf_batch status --output=" << FLAGS_output
-            << '\n';
-  return kExitFailedRuns;
+  if (tasks.empty()) std::cerr << "sf_batch: all runs are finished\n";
+  array = MakeSlurmArray(tasks, options, Program("", "sf_batch"),
+                         WriteTaskList(folder.Below("slurm"), tasks));
+  array.max_array = FLAGS_slurm_max_array;
+  std::cout << SlurmScript(array);
+  return kExitDone;
 }
 
 int PrintStatus() {
@@ -315,11 +403,15 @@ int CollectAll() {
 int Execute(const std::string& command) {
   CheckOption(!FLAGS_output.empty(), "output", "''",
               "the folder of the experiment");
-  if (command == "run") return RunExperiment();
+  if (command == "run") {
+    return FLAGS_task_list.empty() ? RunExperiment() : RunListedTask();
+  }
+  if (command == "emit-slurm") return EmitSlurm();
   if (command == "status") return PrintStatus();
   if (command == "collect") return CollectAll();
-  throw InputError("command '" + command +
-                   "': expected run, status or collect, see --help");
+  throw InputError(
+      "command '" + command +
+      "': expected run, status, collect or emit-slurm, see --help");
 }
 
 }  // namespace

@@ -50,12 +50,16 @@ void Redirect(const char* path, int flags, int descriptor) {
   if (file < 0 || dup2(file, descriptor) < 0) _exit(kNotStarted);
 }
 
-void RestoreSignals() {
+/// SIGTERM is ignored: Slurm and systemd send it to every process of a job, and
+/// a child would take that and the SIGINT that follows from here for two.
+void PrepareSignals() {
   struct sigaction action = {};
   action.sa_handler = SIG_DFL;
-  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) {
+  for (const int signal : {SIGINT, SIGPIPE}) {
     sigaction(signal, &action, nullptr);
   }
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGTERM, &action, nullptr);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -67,7 +71,7 @@ void RestoreSignals() {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   // The parent may have ended before it could be tied to.
   if (getppid() != start.parent) _exit(kNotStarted);
-  RestoreSignals();
+  PrepareSignals();
   Redirect("/dev/null", O_RDONLY, STDIN_FILENO);
   Redirect(start.output, O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
   Redirect(start.errors, O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);

@@ -42,9 +42,10 @@ using StopRequest = std::function<Stop()>;
 
 /// Runs a program without a shell, waits for it, and captures what it says. The
 /// child is in a process group of its own, so that Ctrl-C on the terminal does
-/// not reach it; once `stop` (may be empty) says kWhenReady it gets one SIGINT,
-/// and is waited for as before; at kAtOnce it is killed. It is also killed when
-/// this process ends, however that comes about.
+/// not reach it, and starts with SIGTERM ignored; once `stop` (may be empty)
+/// says kWhenReady it gets one SIGINT, and is waited for as before; at kAtOnce
+/// it is killed. It is also killed when this process ends, however that comes
+/// about.
 ///
 /// @param arguments the program's path, then its arguments.
 /// @param log base path: stdout goes to `log`.log, stderr to `log`.err.log.

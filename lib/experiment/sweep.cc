@@ -216,18 +216,31 @@ std::string SweepProgress::ToString() const {
 
 SweepOutcome RunSweep(const Experiment& experiment, const SweepOptions& options,
                       const SweepCallback& progress, const StopRequest& stop) {
-  const std::vector<Task> tasks = PlanTasks(experiment);
+  SweepOptions adding = options;
+  adding.planned = [&] {
+    if (options.planned) options.planned();
+    MakeFolder(options.output);
+    AddExperiment(ExperimentFolder(options.output), experiment);
+  };
+  return RunTasks(PlanTasks(experiment), adding, progress, stop);
+}
+
+SweepOutcome RunTasks(const std::vector<Task>& tasks,
+                      const SweepOptions& options,
+                      const SweepCallback& progress, const StopRequest& stop) {
   RunCommand command(options.run_program, options.threads);
   CheckBeforeRuns(tasks, options, &command);
   if (options.planned) options.planned();
-  MakeFolder(options.output);
-  AddExperiment(ExperimentFolder(options.output), experiment);
   return SweepQueue(tasks, options, command, progress, stop).Run();
 }
 
 std::vector<PlannedTask> DryRun(const Experiment& experiment,
                                 const SweepOptions& options) {
-  const std::vector<Task> tasks = PlanTasks(experiment);
+  return DryRun(PlanTasks(experiment), options);
+}
+
+std::vector<PlannedTask> DryRun(const std::vector<Task>& tasks,
+                                const SweepOptions& options) {
   RunCommand command(options.run_program, options.threads);
   CheckBeforeRuns(tasks, options, &command);
   const ExperimentFolder folder(options.output);

@@ -61,6 +61,14 @@ SweepOutcome RunSweep(const Experiment& experiment, const SweepOptions& options,
                       const SweepCallback& progress = {},
                       const StopRequest& stop = {});
 
+/// The same for tasks of an experiment that lies in the folder already.
+///
+/// @throw InputError as RunSweep.
+SweepOutcome RunTasks(const std::vector<Task>& tasks,
+                      const SweepOptions& options,
+                      const SweepCallback& progress = {},
+                      const StopRequest& stop = {});
+
 /// A task, and what RunSweep() would do.
 using PlannedTask = std::pair<Task, std::string>;
 
@@ -68,6 +76,12 @@ using PlannedTask = std::pair<Task, std::string>;
 ///
 /// @throw InputError as RunSweep.
 std::vector<PlannedTask> DryRun(const Experiment& experiment,
+                                const SweepOptions& options);
+
+/// What RunTasks() would do, without doing it.
+///
+/// @throw InputError as RunSweep.
+std::vector<PlannedTask> DryRun(const std::vector<Task>& tasks,
                                 const SweepOptions& options);
 
 }  // namespace splitfusion

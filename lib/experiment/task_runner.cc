@@ -1,6 +1,9 @@
 #include "splitfusion/lib/experiment/task_runner.h"
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include "splitfusion/lib/base/content_hash.h"
@@ -42,6 +45,19 @@ std::string StaleEvaluation(const TaskRecord& record, const std::string& run_id,
     return ForeignEvaluation(record, run);
   } catch (const InputError& error) {
     return error.what();
+  }
+}
+
+/// When a computer has died, the lock of its run may fall silent some seconds
+/// after that of its task: waits so long for the lock of a run elsewhere.
+void AwaitSilence(const std::string& lock, const StopRequest& stop) {
+  constexpr int kLooks = 100;
+  constexpr std::chrono::milliseconds kBetween(200);
+  for (int i = 0; i < kLooks; ++i) {
+    const std::optional<LockHolder> holder = LivingHolder(lock);
+    const bool stopped = stop && stop() != Stop::kNo;
+    if (!holder || holder->host == HostName() || stopped) return;
+    std::this_thread::sleep_for(kBetween);
   }
 }
 
@@ -181,6 +197,7 @@ ChildResult TaskRunner::CallRun(const Task& task, bool keep) const {
 bool TaskRunner::Reconstruct(TaskResult* result) const {
   TaskRecord& record = result->record;
   const std::string run = folder_.Run(record.task.name);
+  AwaitSilence(RunPaths(run).Lock(), stop_);
   const std::string set_aside = SetAside(run);
   const RunState before = ReadRunState(run);
   const bool was_complete = before.IsComplete() &&

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "experiment/sweep_fixture.h"
+#include "splitfusion/lib/base/directory_lock.h"
 #include "splitfusion/lib/experiment/repeats.h"
 #include "splitfusion/lib/report/run_marker.h"
 #include "support/expect_input_error.h"
@@ -285,6 +287,23 @@ TEST_F(SweepTest, FailFastStartsNothingAfterAFailure) {
   EXPECT_EQ(outcome.ended, 2);
   EXPECT_EQ(outcome.failed, 1);
   EXPECT_EQ(Table().rows[2].status, "waiting");
+}
+
+TEST_F(SweepTest, WaitsForTheLockOfARunWhoseComputerHasDied) {
+  AddSequence("room");
+  AddExperiment(ExperimentFolder(folder_.Make("out")), experiment_);
+  const std::string run =
+      "out/tasks/" + PlanTasks(experiment_)[0].name + "/run";
+  const std::string lock =
+      folder_.Write(run + "/lock", R"({"id": "1", "host": "gone", "boot": "1",
+                                       "pid": 1, "process_start": 1})");
+  // Two seconds before it counts as silent.
+  fs::last_write_time(lock, fs::file_time_type::clock::now() -
+                                LockOptions().silence +
+                                std::chrono::seconds(2));
+  ASSERT_TRUE(LivingHolder(lock));
+  EXPECT_EQ(Sweep().failed, 0);
+  EXPECT_FALSE(LivingHolder(lock));
 }
 
 TEST_F(SweepTest, ADryRunChangesNothing) {

@@ -153,6 +153,9 @@ TEST(DocumentedFlags, AreThoseOfThePrograms) {
   const std::map<std::string, Flags> known = KnownFlags();
   // Of cmake and ctest.
   Flags any = {"build", "install", "prefix", "preset", "target", "parallel"};
+  // Of sbatch, squeue, apt-get, apptainer and tests/slurm.sh.
+  any.insert({"array", "bind", "cpus", "fakeroot", "me", "mem", "no",
+              "no_install", "open", "partition", "requeue", "time"});
   for (const auto& [program, flags] : known) {
     any.insert(flags.begin(), flags.end());
   }

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "support/program.h"
 #include "support/temporary_folder.h"
@@ -82,15 +84,18 @@ class Interruption : public ::testing::Test {
     return "out/tasks/" + planned.substr(0, planned.find(' '));
   }
 
-  /// Whether anything still runs whose command line names this run directory.
-  bool IsAtWork(const std::string& run) const {
+  /// Processes of sf_run whose command line names this run directory.
+  std::vector<pid_t> AtWork(const std::string& run) const {
+    std::vector<pid_t> processes;
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
       std::ifstream stream(entry.path() / "cmdline");
       const std::string line{std::istreambuf_iterator<char>(stream), {}};
       const bool is_run = line.find("sf_run") != std::string::npos;
-      if (is_run && line.find(folder_ / run) != std::string::npos) return true;
+      if (is_run && line.find(folder_ / run) != std::string::npos) {
+        processes.push_back(std::atoi(entry.path().filename().c_str()));
+      }
     }
-    return false;
+    return processes;
   }
 
   /// Expects a run directory that holds what was computed and says that it is
@@ -147,7 +152,7 @@ TEST_P(TwoSignals, EndABatchAndItsRun) {
       InterruptTwice(&program, run, SIGINT, second, pause_ms);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.errors, HasSubstr("interrupted after 0 of 1 runs"));
-  EXPECT_FALSE(IsAtWork(run));
+  EXPECT_TRUE(AtWork(run).empty());
   EXPECT_THAT(folder_.Read("out/results.csv"), HasSubstr(",0,unfinished,"));
   // A run that is quick enough ends by the first signal.
   const Json record = Json::parse(folder_.Read(task + "/task.json"));
@@ -179,6 +184,19 @@ TEST_F(Interruption, ABatchStopsItsRunAndGoesOnWithIt) {
   const Json summary = Json::parse(folder_.Read(run + "/summary.json"));
   EXPECT_EQ(summary["frames"], kFrames);
   EXPECT_EQ(summary["resumed_at"].size(), 1u);
+}
+
+TEST_F(Interruption, ABatchThatIsSignalledWithAllItsProcessesSavesTheRun) {
+  const std::string run = FirstTask("") + "/run";
+  RunningProgram program("sf_batch", BatchArguments(""));
+  while (program.Runs() && FramesIn(run) < 2) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  // As Slurm does at a time limit.
+  for (const pid_t process : AtWork(run)) kill(process, SIGTERM);
+  program.Send(SIGTERM);
+  EXPECT_EQ(program.Wait().exit_code, 1);
+  ExpectUnfinished(run);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "support/program.h"
@@ -144,7 +145,7 @@ TEST_F(SfBatch, SaysWhatItExpects) {
   AddSequence("room");
   const ProgramResult none = RunProgram("sf_batch", "--output=x");
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.errors, HasSubstr("expected run, status or collect"));
+  EXPECT_THAT(none.errors, HasSubstr("expected run, status, collect"));
   const ProgramResult unknown =
       RunProgram("sf_batch", Arguments("room", "out") + " --grid='bogus=1,2'");
   EXPECT_EQ(unknown.exit_code, 2);
@@ -271,6 +272,62 @@ TEST_F(SfBatch, AnAblationComparesItsRowsAndKeepsThem) {
   const std::string starts = folder_.Read("data/room/starts.txt");
   EXPECT_EQ(RunProgram("sf_batch", arguments).output, result.output);
   EXPECT_EQ(folder_.Read("data/room/starts.txt"), starts);
+}
+
+TEST_F(SfBatch, EmitsArraysOfWhatIsNotFinished) {
+  for (const char* name : {"room", "bad"}) AddSequence(name);
+  std::string arguments = Arguments("room,bad", "out");
+  arguments.replace(0, 3, "emit-slurm");
+  const ProgramResult emitted = RunProgram("sf_batch", arguments);
+  EXPECT_EQ(emitted.exit_code, 0) << emitted.errors;
+  EXPECT_THAT(emitted.output, HasSubstr("\nsubmit 1 2 \"$@\"\n"));
+  EXPECT_THAT(emitted.output,
+              HasSubstr("'--run_program=" + (folder_ / "bin/sf_run") + "'"));
+  const std::string output = " --output=" + (folder_ / "out");
+  EXPECT_EQ(RunProgram("sf_batch", "status" + output).output,
+            "2 runs, 2 waiting\n");
+  const std::string list =
+      std::filesystem::directory_iterator(folder_ / "out/slurm")
+          ->path()
+          .string();
+  const std::string run =
+      "run" + output + " --run_program=" + (folder_ / "bin/sf_run") +
+      " --evaluate_program=" + (folder_ / "bin/sf_evaluate") +
+      " --task_list=" + list;
+  EXPECT_EQ(RunProgram("sf_batch", run + " --task=1").exit_code, 0);
+  EXPECT_EQ(RunProgram("sf_batch", run + " --task=2").exit_code, 3);
+  EXPECT_FALSE(folder_.Has("out/results.csv"));
+  EXPECT_THAT(RunProgram("sf_batch", "status" + output).output,
+              HasSubstr("2 runs, 1 complete, 1 failed\nbad_"));
+  const std::string again =
+      "emit-slurm" + output + " --run_program=" + (folder_ / "bin/sf_run") +
+      " --evaluate_program=" + (folder_ / "bin/sf_evaluate");
+  EXPECT_THAT(RunProgram("sf_batch", again).output,
+              HasSubstr("\nsubmit 1 1 \"$@\"\n"));
+  const ProgramResult rest = RunProgram("sf_batch", again + " --keep_failed");
+  EXPECT_EQ(rest.exit_code, 0);
+  EXPECT_EQ(rest.errors, "sf_batch: all runs are finished\n");
+}
+
+TEST_F(SfBatch, SaysWhatArraysCannotTake) {
+  AddSequence("room");
+  std::string arguments = Arguments("room", "out");
+  arguments.replace(0, 3, "emit-slurm");
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {arguments + " --slurm_max_array=0", "--slurm_max_array = 0: expected"},
+      {arguments + " --jobs=3", "--jobs = 3: expected no such flag"},
+      {arguments + " --grid=bogus=1", "bogus"},
+      {"emit-slurm --output=" + (folder_ / "none"), "holds no experiment"},
+      {Arguments("room", "out") + " --task=3", "--task = 3: expected"},
+      {Arguments("room", "out") + " --task_list=x --task=3", "--sequences = "},
+      {"run --task=1 --task_list=none --output=" + (folder_ / "out"),
+       "none: cannot be opened"}};
+  for (const auto& [command, message] : refused) {
+    const ProgramResult result = RunProgram("sf_batch", command);
+    EXPECT_EQ(result.exit_code, 2) << command;
+    EXPECT_THAT(result.errors, HasSubstr(message));
+  }
+  EXPECT_FALSE(folder_.Has("out"));
 }
 
 TEST_F(SfBatch, HelpFitsAScreen) {
