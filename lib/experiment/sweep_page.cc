@@ -87,7 +87,7 @@ Chart ChartOfFigure(const std::vector<ResultGroup>& groups,
     line.spread[place] = spread.StandardError();
   }
   Chart chart;
-  chart.title = kFigureNames[figure];
+  chart.title = kFigureNames[figure] + (" over " + keys[axis]);
   chart.axis = keys[axis];
   for (const std::string& value : values) {
     chart.names.push_back(value.empty() ? "default" : value);

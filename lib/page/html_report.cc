@@ -62,12 +62,27 @@ void AddChart(const CurveGroup& group, std::vector<int> marks,
       run.name);
 }
 
-/// Which surface was in which state when.
+/// What was decided of a surface, as marks on its strip; what has no surface
+/// yet is on that of the background.
+std::vector<StripMark> MarksOf(int surface, const RunCurves& curves) {
+  std::vector<StripMark> marks;
+  for (const RunEvent& event : curves.events) {
+    if (event.surface != surface) continue;
+    const auto found = std::lower_bound(curves.frames.begin(),
+                                        curves.frames.end(), event.frame);
+    marks.push_back({static_cast<int>(found - curves.frames.begin()),
+                     "frame " + std::to_string(event.frame) + ": " +
+                         event.class_name + " " + event.what});
+  }
+  return marks;
+}
+
+/// Which surface was in which state when, and what was decided.
 std::string States(const RunCurves& curves) {
   std::vector<Strip> strips;
   for (const SurfaceCurves& surface : curves.surfaces) {
-    strips.push_back(
-        {surface.name.substr(0, surface.name.find('_')), surface.states});
+    const std::string id = surface.name.substr(0, surface.name.find('_'));
+    strips.push_back({id, surface.states, MarksOf(std::stoi(id), curves)});
   }
   std::vector<std::string> values;
   for (const TrackState state :
@@ -93,7 +108,7 @@ std::string Events(const std::vector<RunEvent>& events) {
 
 void AddCharts(const ReportedRun& run, HtmlPage* page) {
   const RunCurves& curves = run.curves;
-  page->Add(Heading("States and seconds over the frames") +
+  page->Add(Heading("States, decisions and seconds over the frames") +
             "<div class=\"charts\">" + States(curves));
   AddChart(curves.seconds, {}, run, page);
   page->Add("</div>\n" + Events(curves.events));

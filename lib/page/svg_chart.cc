@@ -172,9 +172,11 @@ std::string AxesFrame(const Axes& axes, const Chart& chart) {
     svg += TextAt(kLeft - 4, axes.Y(k * step) + 4, cv::format("%.6g", k * step),
                   "end");
   }
-  return svg + (chart.names.empty()
-                    ? FrameTicks(axes, kTop + kHeight)
-                    : NameTicks(axes, chart.names, kTop + kHeight));
+  return svg +
+         (chart.names.empty()
+              ? TextAt(kLeft - 4, kTop + kHeight + 14, chart.axis, "end") +
+                    FrameTicks(axes, kTop + kHeight)
+              : NameTicks(axes, chart.names, kTop + kHeight));
 }
 
 std::string Marks(const std::vector<int>& marks, const Axes& axes) {
@@ -234,6 +236,17 @@ std::string Bars(const Strip& strip, const std::vector<std::string>& values,
   return svg;
 }
 
+/// Small triangles over a strip.
+std::string StripMarks(const Strip& strip, const Axes& axes, double y) {
+  std::string svg;
+  for (const StripMark& mark : strip.marks) {
+    svg += "<path stroke=\"#888\" d=\"M" + Number(axes.X(mark.position)) + " " +
+           Number(y + 8) + "l-4 -8h8z\"><title>" + HtmlEscaped(mark.text) +
+           "</title></path>\n";
+  }
+  return svg;
+}
+
 }  // namespace
 
 std::string SvgChart(const Chart& chart) {
@@ -270,7 +283,7 @@ std::string SvgStrips(const std::vector<Strip>& strips,
   double y = 4;
   for (const Strip& strip : strips) {
     svg += TextAt(kLeft - 4, y + 10, strip.name, "end") +
-           Bars(strip, values, axes, y);
+           Bars(strip, values, axes, y) + StripMarks(strip, axes, y);
     names += strip.name + " ";
     y += kLine;
   }

@@ -32,10 +32,17 @@ struct Chart {
 /// values says so. Text has the colour of the page.
 std::string SvgChart(const Chart& chart);
 
+/// What happened at a position.
+struct StripMark {
+  int position = 0;  ///< Among the frames.
+  std::string text;  ///< Shown when it is pointed at.
+};
+
 /// What holds over some frames, such as the state of a surface.
 struct Strip {
-  std::string name;                 ///< Left of it.
-  std::vector<std::string> values;  ///< By position; empty: nothing.
+  std::string name;                   ///< Left of it.
+  std::vector<std::string> values;    ///< By position; empty: nothing.
+  std::vector<StripMark> marks = {};  ///< Drawn over it.
 };
 
 /// Strips below one another over common frames, one colour a value in order of

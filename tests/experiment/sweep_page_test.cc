@@ -53,8 +53,8 @@ TEST(SweepPage, DrawsMeansWithTheirStandardErrors) {
   EXPECT_THAT(page, HasSubstr("6 of 7 runs are complete"));
   EXPECT_THAT(page, HasSubstr("desk_4ceres_r0 failed: a &lt; b"));
   // Figures that no run has are not drawn, nor is what failed.
-  EXPECT_THAT(page, HasSubstr(R"("title":"ate_m")"));
-  EXPECT_THAT(page, Not(HasSubstr(R"("title":"rpe_m")")));
+  EXPECT_THAT(page, HasSubstr(R"("title":"ate_m over weight")"));
+  EXPECT_THAT(page, Not(HasSubstr(R"("title":"rpe_m)")));
   EXPECT_THAT(page, Not(HasSubstr("solver=ceres")));
 }
 

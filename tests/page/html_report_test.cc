@@ -78,6 +78,9 @@ TEST(SvgChart, SaysWhenThereIsNothing) {
 TEST(SvgStrips, AreOneBarForEqualValuesOnEnd) {
   const std::string svg = SvgStrips({{"001", {"", "up", "up", "down", "up"}}},
                                     {"up", "down"}, {0, 1, 2, 3, 4});
+  const std::string marked =
+      SvgStrips({{"001", {"up"}, {{0, "frame 0: a<b born"}}}}, {"up"}, {0});
+  EXPECT_TRUE(Contains(marked, "<title>frame 0: a&lt;b born</title>"));
   // Three bars, and two in the legend.
   EXPECT_EQ(Count(svg, "<rect"), 5u);
   EXPECT_TRUE(Contains(svg, "<rect x=\"199\" y=\"4\" width=\"286\""));

@@ -41,7 +41,7 @@ strip() {
     frame="$(basename "$first" "_$1.png")"
     last=()
     for name in "$@"; do last+=("$work/run/pictures/${frame}_$name.png"); done
-    convert "${last[@]}" -resize 240x +append "$folder/$frame.png"
+    convert "${last[@]}" -resize 240x +append +repage "$folder/$frame.png"
   done
 }
 
@@ -61,7 +61,7 @@ animate shape 10 "$work"/shape/*.png
 "$bin/sf_batch" run --sequences="$work/small" --output="$work/sweep" \
   --grid="terms.arap.weight=1,4,16" --repeat=3 --jobs=2
 "$bin/sf_solve" "$work"/run/problems/*_001.h5 --output="$work/solved" \
-  --overwrite
+  --solvers=gn_pcg,gn_cholesky,ceres --overwrite
 cp "$work/solved/profile_1e-4.svg" "$out/solvers.svg"
 
 rm -rf "$work/shots"

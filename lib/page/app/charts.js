@@ -180,7 +180,8 @@ function draw(figure, chart, colors) {
       plot.setSize({width: place.clientWidth, height: 190});
     }
   }).observe(place);
-  figure.addEventListener('keydown', event => onKey(event, plot, chart.group, show));
+  figure.addEventListener(
+      'keydown', event => onKey(event, plot, chart.group, show));
   plot.over.addEventListener('dblclick', () => unzoom(chart.group));
   plot.over.addEventListener('click', () => {
     if (plot.cursor.idx != null) show(plot.data[0][plot.cursor.idx]);

@@ -250,7 +250,8 @@ const viewers = Promise.all(
       try {
         return await makeViewer(place);
       } catch (error) {
-        place.append(element('p', {textContent: `No viewer: ${error.message}`}));
+        place.append(
+            element('p', {textContent: `No viewer: ${error.message}`}));
         return null;
       }
     }));
