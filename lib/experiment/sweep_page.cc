@@ -16,6 +16,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// More lines in one chart cannot be told apart; more runs are not listed.
+constexpr std::size_t kLines = 24;   // Layout.
+constexpr std::size_t kRuns = 1000;  // Layout.
 constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
 
 /// Numbers by size, before texts, which are as they come in the alphabet.
@@ -146,7 +149,9 @@ std::string UrlOf(const std::string& path) {
 /// have one.
 std::string Runs(const ExperimentFolder& folder, const ResultTable& table) {
   std::string html = "<ul>\n";
-  for (const ResultRow& row : table.rows) {
+  const std::size_t shown = std::min(table.rows.size(), kRuns);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const ResultRow& row = table.rows[i];
     std::string name = HtmlEscaped(row.task.name);
     const std::string page = "tasks/" + row.task.name + "/run/report.html";
     if (std::filesystem::exists(folder.Below(page))) {
@@ -156,7 +161,10 @@ std::string Runs(const ExperimentFolder& folder, const ResultTable& table) {
             (row.error.empty() ? "" : ": " + HtmlEscaped(row.error)) +
             "</li>\n";
   }
-  return html + "</ul>\n";
+  html += "</ul>\n";
+  if (shown == table.rows.size()) return html;
+  return html + "<p>and " + std::to_string(table.rows.size() - shown) +
+         " more, see results.csv</p>\n";
 }
 
 }  // namespace

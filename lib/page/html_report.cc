@@ -174,7 +174,7 @@ std::string Options(const ReportedRun& run) {
 void AddViewer(const ReportedRun& run, HtmlPage* page) {
   page->Add(Heading("Surfaces in 3D"));
   try {
-    page->AddViewer(SceneOfRun(RunPaths(run.folder), run.curves), run.name);
+    page->AddViewer(SceneOfRun(run), run.name);
   } catch (const InputError& error) {
     page->Add("<p>No viewer: " + HtmlEscaped(error.what()) + "</p>\n");
   }

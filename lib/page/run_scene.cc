@@ -21,8 +21,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Values = std::vector<std::int32_t>;
 
-constexpr int kVertices = 30000;            // Layout. Of a surface.
-constexpr double kUnit = 1e-4;              // Layout. Of places, metres.
+constexpr double kMotions = 2e6;  // Layout. Nodes times frames of all surfaces.
+constexpr int kVertices = 30000;  // Layout. Of a surface.
+constexpr double kUnit = 1e-4;    // Layout. Of places, metres.
 constexpr double kRotationUnit = 2.5e-4;    // Layout. Of a unit quaternion.
 constexpr double kWeightUnit = 1.0 / 2047;  // Layout. Of weights of Eq. 3.
 
@@ -35,7 +36,9 @@ struct SceneSurface {
   const RecordedSurface& recorded;
   SmallerMesh smaller;
   std::vector<Skinning> skinning;  // Of the vertices of `smaller`.
-  std::vector<int> places;         // In the scene, of its motions' frames.
+  /// In the frames of the scene, and where these are in it.
+  std::vector<const FrameMotions*> motions;
+  std::vector<int> places;
 };
 
 template <typename Points>
@@ -132,16 +135,16 @@ Values Edges(const DeformationGraph& graph) {
 
 /// Quaternion (x, y, z, w) and translation of all nodes in all frames: by
 /// component, frame, node.
-Values Motions(const RecordedSurface& surface) {
-  const std::size_t nodes = surface.graph.positions.size();
-  const std::size_t count = nodes * surface.motions.frames.size();
+Values Motions(const SceneSurface& surface) {
+  const std::size_t nodes = surface.recorded.graph.positions.size();
+  const std::size_t count = nodes * surface.motions.size();
   Values values(7 * count);
   std::vector<Eigen::Vector4d> before(nodes, Eigen::Vector4d::Zero());
   std::size_t at = 0;
-  for (const FrameMotions& frame : surface.motions.frames) {
+  for (const FrameMotions* frame : surface.motions) {
     for (std::size_t n = 0; n < nodes; ++n, ++at) {
       Eigen::Vector4d turn =
-          Eigen::Quaterniond(frame.motions[n].rotation).coeffs();
+          Eigen::Quaterniond(frame->motions[n].rotation).coeffs();
       // Of the two that are the same rotation, the one like the last.
       if (turn.dot(before[n]) < 0) turn = -turn;
       before[n] = turn;
@@ -150,7 +153,7 @@ Values Motions(const RecordedSurface& surface) {
       }
       for (int c = 0; c < 3; ++c) {
         values[(4 + c) * count + at] =
-            InUnits(frame.motions[n].translation[c], kUnit);
+            InUnits(frame->motions[n].translation[c], kUnit);
       }
     }
   }
@@ -175,76 +178,94 @@ Json ArraysOf(const SceneSurface& surface, const std::vector<int>& frames,
       {"positions", arrays->Add(PlacesInUnits(graph.positions), 3)},
       {"edges", arrays->Add(Edges(graph), 2)},
       {"used", arrays->Add(UsedIntervals(surface, frames), 2)},
-      {"motions", arrays->Add(Motions(surface.recorded), graph.size())},
+      {"motions", arrays->Add(Motions(surface), graph.size())},
   };
 }
 
-/// Where each of some frames is in the scene.
-std::vector<int> PlacesOf(const std::vector<int>& some,
-                          const std::vector<int>& frames,
-                          const std::string& name) {
+/// Where a frame is in the scene; -1: it is not.
+int PlaceOf(int frame, const std::vector<int>& frames) {
+  const auto found = std::lower_bound(frames.begin(), frames.end(), frame);
+  return found == frames.end() || *found != frame
+             ? -1
+             : static_cast<int>(found - frames.begin());
+}
+
+/// Packs a field in the frames of the scene; says where it is in `where`.
+Json PackField(const NodeField& field, const std::vector<int>& frames,
+               int nodes, Json* where, PackedArrays* arrays) {
   std::vector<int> places;
-  for (const int frame : some) {
-    const auto found = std::lower_bound(frames.begin(), frames.end(), frame);
-    if (found == frames.end() || *found != frame) {
-      throw InputError("surface " + name + " is known in frame " +
-                       std::to_string(frame) +
-                       ": expected frames of frames.jsonl");
-    }
-    places.push_back(static_cast<int>(found - frames.begin()));
+  Values values;
+  for (std::size_t row = 0; row < field.frames.size(); ++row) {
+    const int place = PlaceOf(field.frames[row], frames);
+    if (place < 0) continue;
+    places.push_back(place);
+    const auto begin = field.values.begin() + row * nodes;
+    values.insert(values.end(), begin, begin + nodes);
   }
-  return places;
+  (*where)[field.name] = arrays->Add(values, nodes);
+  return {{"frames", places},
+          {"holds", field.holds},
+          {"unit", NodeField::kUnit},
+          {"top", field.top}};
 }
 
-/// Packs the fields of a surface; `about`: what is known of fields of any.
-Json PackFields(const std::vector<NodeField>& fields, const std::string& name,
-                const std::vector<int>& frames, int nodes, Json* about,
-                Json* where, PackedArrays* arrays) {
-  Json packed = Json::object();
-  for (const NodeField& field : fields) {
-    (*about)[field.name] = {{"title", field.title}, {"top", field.top}};
-    (*where)[field.name] = arrays->Add(field.values, nodes);
-    packed[field.name] = {{"frames", PlacesOf(field.frames, frames, name)},
-                          {"holds", field.holds},
-                          {"unit", NodeField::kUnit},
-                          {"top", field.top}};
+SceneSurface MakeSurface(const RecordedSurface& recorded,
+                         const std::vector<int>& frames) {
+  SceneSurface surface{
+      recorded, SimplifiedMesh(recorded.mesh, kVertices), {}, {}, {}};
+  surface.skinning = SkinningIndex(recorded.graph, recorded.neighbors_per_point)
+                         .Skin(surface.smaller.mesh.vertices);
+  for (const FrameMotions& motions : recorded.motions.frames) {
+    const int place = PlaceOf(motions.frame, frames);
+    if (place < 0) continue;
+    surface.motions.push_back(&motions);
+    surface.places.push_back(place);
   }
-  return packed;
+  return surface;
 }
 
-/// A surface as the viewer reads it. `curves`: its own.
-Json SurfaceOf(const RecordedSurface& recorded, const SurfaceCurves& curves,
+/// A surface as the viewer reads it. `about`: gathers what fields there are.
+Json SurfaceOf(const SceneSurface& surface, const SurfaceCurves& curves,
                const std::vector<int>& frames,
                const std::vector<NodeField>& fields, Json* about,
                PackedArrays* arrays) {
-  SceneSurface surface{
-      recorded, SimplifiedMesh(recorded.mesh, kVertices), {}, {}};
-  surface.skinning = SkinningIndex(recorded.graph, recorded.neighbors_per_point)
-                         .Skin(surface.smaller.mesh.vertices);
-  std::vector<int> own;
-  for (const FrameMotions& motions : recorded.motions.frames) {
-    own.push_back(motions.frame);
-  }
-  surface.places = PlacesOf(own, frames, curves.name);
-  const int per_vertex =
-      std::min(recorded.graph.size(), recorded.neighbors_per_point);
+  const int nodes = surface.recorded.graph.size();
+  const int per_vertex = std::min(nodes, surface.recorded.neighbors_per_point);
   Json where = ArraysOf(surface, frames, per_vertex, arrays);
-  const Json packed = PackFields(fields, curves.name, frames,
-                                 recorded.graph.size(), about, &where, arrays);
+  Json packed = Json::object();
+  for (const NodeField& field : fields) {
+    (*about)[field.name] = {{"title", field.title}, {"top", field.top}};
+    packed[field.name] = PackField(field, frames, nodes, &where, arrays);
+  }
   return {{"name", curves.name},
-          {"states", curves.states},
           {"unit", kUnit},
           {"rotation_unit", kRotationUnit},
           {"stretched", kStretchedEdge},
           {"per_vertex", per_vertex},
-          {"nodes", recorded.graph.size()},
+          {"nodes", nodes},
           {"frames", surface.places},
           {"fields", packed},
           {"arrays", where}};
 }
 
-/// Poses of the camera by frame.
-Json PosesOf(const RunPaths& paths, std::size_t frames) {
+/// Every n-th position of the run's frames, so that the motions of all nodes
+/// are not too many for a page.
+std::vector<int> PositionsShown(const ReportedRun& run) {
+  double motions = 0;
+  for (const Json& surface : run.summary.at("surfaces")) {
+    motions += surface.at("nodes").get<double>();
+  }
+  const int count = static_cast<int>(run.curves.frames.size());
+  const int step =
+      std::max(1, static_cast<int>(std::ceil(motions * count / kMotions)));
+  std::vector<int> positions;
+  for (int i = 0; i < count; i += step) positions.push_back(i);
+  return positions;
+}
+
+/// Poses of the camera in some of the run's frames.
+Json PosesOf(const RunPaths& paths, std::size_t frames,
+             const std::vector<int>& positions) {
   const Trajectory trajectory = ReadTumTrajectory(paths.Trajectory());
   if (trajectory.size() != frames) {
     throw InputError(paths.Trajectory() + ": has " +
@@ -253,9 +274,10 @@ Json PosesOf(const RunPaths& paths, std::size_t frames) {
                      std::to_string(frames));
   }
   Json poses = Json::array();
-  for (const TimedPose& pose : trajectory) {
-    const Eigen::Vector3d place = pose.world_from_camera.translation();
-    const Eigen::Quaterniond turn(pose.world_from_camera.linear());
+  for (const int position : positions) {
+    const Rigid3d& pose = trajectory[position].world_from_camera;
+    const Eigen::Vector3d place = pose.translation();
+    const Eigen::Quaterniond turn(pose.linear());
     poses.push_back({place.x(), place.y(), place.z(), turn.x(), turn.y(),
                      turn.z(), turn.w()});
   }
@@ -270,21 +292,32 @@ double FieldOfView(const RunPaths& paths) {
 
 }  // namespace
 
-RunScene SceneOfRun(const RunPaths& paths, const RunCurves& curves) {
+RunScene SceneOfRun(const ReportedRun& run) {
+  const RunPaths paths(run.folder);
+  const std::vector<int> positions = PositionsShown(run);
+  std::vector<int> frames;
+  for (const int position : positions) {
+    frames.push_back(run.curves.frames[position]);
+  }
   PackedArrays arrays;
   Json surfaces = Json::array(), fields = Json::object();
-  for (const SurfaceCurves& surface : curves.surfaces) {
+  for (const SurfaceCurves& curves : run.curves.surfaces) {
     const RecordedSurface recorded =
-        ReadRecordedSurface(paths.root() + "/surfaces/" + surface.name);
-    surfaces.push_back(SurfaceOf(recorded, surface, curves.frames,
-                                 FieldsOf(paths, recorded), &fields, &arrays));
+        ReadRecordedSurface(run.folder + "/surfaces/" + curves.name);
+    Json surface = SurfaceOf(MakeSurface(recorded, frames), curves, frames,
+                             FieldsOf(paths, recorded), &fields, &arrays);
+    for (const int position : positions) {
+      surface["states"].push_back(curves.states[position]);
+    }
+    surfaces.push_back(surface);
   }
   RunScene scene;
-  scene.header = {{"frames", curves.frames},
-                  {"poses", PosesOf(paths, curves.frames.size())},
-                  {"fov", FieldOfView(paths)},
-                  {"fields", fields},
-                  {"surfaces", surfaces}};
+  scene.header = {
+      {"frames", frames},
+      {"poses", PosesOf(paths, run.curves.frames.size(), positions)},
+      {"fov", FieldOfView(paths)},
+      {"fields", fields},
+      {"surfaces", surfaces}};
   scene.arrays = arrays.Text();
   return scene;
 }

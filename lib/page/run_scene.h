@@ -3,10 +3,8 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
-#include "splitfusion/lib/page/run_curves.h"
-#include "splitfusion/lib/report/run_paths.h"
+#include "splitfusion/lib/page/reported_run.h"
 
 namespace splitfusion {
 
@@ -21,11 +19,12 @@ struct RunScene {
 /// All surfaces of a run as they move, made smaller for a page: of each at most
 /// about 30,000 vertices that its triangles still need when the least important
 /// edges are collapsed, places in tenths of a millimetre, rotations in 1/4000
-/// of a quaternion's entries. `source` of a surface are the indices that its
+/// of a quaternion's entries; every n-th frame where there are more than two
+/// million motions of nodes. `source` of a surface are the indices that its
 /// vertices have in mesh.ply.
 ///
 /// @throw InputError if a file of the run is missing or broken.
-RunScene SceneOfRun(const RunPaths& paths, const RunCurves& curves);
+RunScene SceneOfRun(const ReportedRun& run);
 
 }  // namespace splitfusion
 

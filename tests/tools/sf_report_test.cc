@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "sf_run_fixture.h"
@@ -82,6 +83,25 @@ TEST_F(SfReport, PlaysSurfacesOnlyWhereTheyAreAskedFor) {
   const std::size_t none = size("none");
   EXPECT_THAT(folder_.Read("page.html"), Not(HasSubstr("data:image")));
   EXPECT_GT(size("all"), none);
+}
+
+TEST_F(SfReport, PlaysFewerFramesOfWhatIsTooMuchForAPage) {
+  Synthesize("--frames=4");
+  MakeRun("run");
+  const std::string command =
+      (folder_ / "run") + " --output=" + (folder_ / "page.html");
+  ASSERT_EQ(Report(command).exit_code, 0);
+  const std::string page = folder_.Read("page.html");
+  if (page.find("class=\"scene\"") == std::string::npos) {
+    GTEST_SKIP() << "node not found when this was built: no viewer";
+  }
+  EXPECT_THAT(page, HasSubstr(R"({"frames":[0,1,2,3],"poses")"));
+  auto summary = nlohmann::json::parse(folder_.Read("run/summary.json"));
+  summary["surfaces"][0]["nodes"] = 1'000'000;  // Two million in four frames.
+  folder_.Write("run/summary.json", summary.dump());
+  ASSERT_EQ(Report(command).exit_code, 0);
+  EXPECT_THAT(folder_.Read("page.html"),
+              HasSubstr(R"({"frames":[0,3],"poses")"));
 }
 
 TEST_F(SfReport, ShowsTheFiguresOfSolvers) {

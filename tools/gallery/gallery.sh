@@ -11,7 +11,11 @@ bin=build/release/bin
 out=docs/images/gallery
 largest=1000000  # Bytes of a picture.
 
-for program in convert chromium node "$bin/sf_run"; do
+if ! convert -version 2>/dev/null | grep -q ImageMagick; then
+  echo "gallery: ImageMagick not found" >&2
+  exit 2
+fi
+for program in chromium node "$bin/sf_run"; do
   if ! command -v "$program" >/dev/null; then
     echo "gallery: $program not found" >&2
     exit 2
@@ -32,16 +36,16 @@ animate() {
   exit 1
 }
 
-# strip FOLDER NAME...: pictures of every third frame side by side.
+# strip FOLDER NAME...: pictures of every fifth frame side by side.
 strip() {
   local folder="$1" first last frame
   shift
   mkdir -p "$folder"
-  for first in "$work"/run/pictures/*[0369]_"$1".png; do
+  for first in "$work"/run/pictures/*[05]_"$1".png; do
     frame="$(basename "$first" "_$1.png")"
     last=()
     for name in "$@"; do last+=("$work/run/pictures/${frame}_$name.png"); done
-    convert "${last[@]}" -resize 240x +append +repage "$folder/$frame.png"
+    convert "${last[@]}" -resize 220x +append +repage "$folder/$frame.png"
   done
 }
 
@@ -52,9 +56,9 @@ strip() {
 "$bin/sf_report" "$work/run" --output="$work/page.html"
 
 strip "$work/split" input labels composite
-animate split 10 "$work"/split/*.png
+animate split 20 "$work"/split/*.png
 strip "$work/shape" normals depth error
-animate shape 10 "$work"/shape/*.png
+animate shape 20 "$work"/shape/*.png
 
 "$bin/sf_synth" --output="$work/small" --frames=20 --width=320 --height=240 \
   --overwrite
@@ -66,8 +70,8 @@ cp "$work/solved/profile_1e-4.svg" "$out/solvers.svg"
 
 rm -rf "$work/shots"
 node tools/gallery/shots.mjs build/release/page "$work" "$work/shots"
-animate viewer 8 "$work"/shots/turn_*.png
-animate residual 8 "$work"/shots/residual_*.png
+animate viewer 12 "$work"/shots/turn_*.png
+animate residual 12 "$work"/shots/residual_*.png
 for name in page sweep; do
   convert "$work/shots/$name.png" -resize 1000x -quality 85 "$out/$name.jpg"
 done

@@ -16,14 +16,14 @@ const browser = await chromium.launch({
 });
 const page = await browser.newPage({viewport: {width: 1360, height: 1000}});
 
-/** Every second frame, while the eye goes round by some degrees. */
+/** Every third frame, while the eye goes round by some degrees. */
 async function film(prefix, mode, graph, degrees) {
-  await page.setViewportSize({width: 560, height: 520});
+  await page.setViewportSize({width: 440, height: 480});
   await page.locator('.viewer select').first().selectOption(mode);
   await page.locator('.viewer input[type=checkbox]').first().setChecked(graph);
   const frames = await page.evaluate(
       async () => (await splitfusion.viewers)[0].data.frames.length);
-  for (let frame = 0; frame < frames; frame += 2) {
+  for (let frame = 0; frame < frames; frame += 3) {
     await page.evaluate(async ({frame, turn}) => {
       const [viewer] = await splitfusion.viewers;
       viewer.show(frame);
