@@ -21,6 +21,7 @@
 #include "splitfusion/lib/evaluation/run_evaluation.h"
 #include "splitfusion/lib/evaluation/track_point.h"
 #include "splitfusion/lib/page/curve_chart.h"
+#include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_marker.h"
 #include "splitfusion/lib/report/run_paths.h"
@@ -211,6 +212,20 @@ void CheckIsThere() {
                    "it");
 }
 
+/// The page of the run, if it has one, with its evaluation, which does not
+/// depend on it.
+void RenewPage() try {
+  const RunPaths paths(FLAGS_run);
+  if (!std::filesystem::exists(paths.HtmlReport())) return;
+  const std::string page = HtmlReport({ReadReportedRun(paths)});
+  WriteFileAtomically(paths.HtmlReport(),
+                      [&](std::ostream& out) { out << page; });
+  AddRunFile(FLAGS_run, "report.html");
+} catch (const InputError& error) {
+  std::cerr << "sf_evaluate: warning: report.html stays as it was: "
+            << error.what() << '\n';
+}
+
 void EvaluateRunDirectory(const EvaluationOptions& options,
                           const FormatRegistry& formats) {
   CheckIsThere();
@@ -239,7 +254,9 @@ void EvaluateRunDirectory(const EvaluationOptions& options,
   evaluation.whole_model = FLAGS_whole_model;
   Publish(FormatTable(evaluation), ToJson(evaluation),
           RunPaths(FLAGS_run).Evaluation());
-  if (FLAGS_output.empty()) AddRunFile(FLAGS_run, "evaluation.json");
+  if (!FLAGS_output.empty()) return;
+  AddRunFile(FLAGS_run, "evaluation.json");
+  RenewPage();
 }
 
 /// @throw InputError unless the flags are those of one of the uses.

@@ -11,6 +11,7 @@
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/make_folder.h"
 #include "splitfusion/lib/experiment/child_process.h"
 #include "splitfusion/lib/experiment/scratch_folder.h"
 #include "splitfusion/lib/page/html_report.h"
@@ -44,8 +45,11 @@ void WritePdf(const std::string& path) {
                   "--output=" + temporary, path + ".svg"},
                  scratch.path() + "/rsvg-convert");
     if (result.exit_code == 0) return;
-    throw InputError("--figure_format=pdf: " + result.LastLine() +
-                     ": expected rsvg-convert (Debian's librsvg2-bin)");
+    throw InputError(
+        result.exit_code == 127
+            ? "--figure_format=pdf: rsvg-convert not found: expected Debian's "
+              "librsvg2-bin"
+            : "--figure_format=pdf: rsvg-convert: " + result.LastLine());
   });
 }
 
@@ -107,13 +111,18 @@ std::vector<ReportedRun> ReadRuns(const std::vector<std::string>& folders) {
   std::set<std::string> names;
   for (const std::string& folder : folders) {
     // Without a slash at the end a folder has a name.
-    paths.push_back((fs::path(folder) / "").parent_path());
+    paths.push_back(
+        (fs::absolute(folder) / "").lexically_normal().parent_path());
     runs.push_back(ReadReportedRun(RunPaths(paths.back().string())));
     names.insert(runs.back().name);
   }
   if (names.size() == runs.size()) return runs;
   const std::vector<std::string> apart = ShortNames(paths);
-  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name = apart[i];
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].name = apart[i];
+    CheckOption(std::count(paths.begin(), paths.end(), paths[i]) == 1, "RUN",
+                folders[i], "every run once");
+  }
   return runs;
 }
 
@@ -149,7 +158,7 @@ int Run(std::vector<std::string> folders) {
     WritePage(runs, {solved, folders.end()});
   }
   if (!FLAGS_figures.empty()) {
-    fs::create_directories(FLAGS_figures);
+    MakeFolder(FLAGS_figures);
     int written = 0;
     for (const ReportedRun& run : runs) {
       written += WriteFigures(run, FLAGS_figures);

@@ -13,8 +13,14 @@ namespace splitfusion {
 void WritePathAtomically(const std::string& path,
                          const std::function<void(const std::string&)>& write) {
   namespace fs = std::filesystem;
-  const fs::path target(path);
   std::error_code error;
+  // A link stays, and what it names is replaced.
+  const fs::path target = fs::is_symlink(path, error)
+                              ? fs::weakly_canonical(path, error)
+                              : fs::path(path);
+  if (fs::exists(target, error) && !fs::is_regular_file(target, error)) {
+    throw InputError(path + ": cannot be written: expected a regular file");
+  }
   if (target.has_parent_path()) {
     fs::create_directory(target.parent_path(), error);
   }

@@ -17,8 +17,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// More lines in one chart cannot be told apart; more runs are not listed.
-constexpr std::size_t kLines = 24;   // Layout.
-constexpr std::size_t kRuns = 1000;  // Layout.
+constexpr std::size_t kAxisCharacters = 12;  // Layout.
+constexpr std::size_t kLines = 24;           // Layout.
+constexpr std::size_t kRuns = 1000;          // Layout.
 constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
 
 /// Numbers by size, before texts, which are as they come in the alphabet.
@@ -68,6 +69,35 @@ std::string LineOf(const ResultGroup& group,
   return name;
 }
 
+/// What stands below an axis: values that are short enough, or else letters.
+std::vector<std::string> ShortNames(const std::vector<std::string>& values) {
+  const bool all_short = std::all_of(
+      values.begin(), values.end(),
+      [](const std::string& value) { return value.size() <= kAxisCharacters; });
+  std::vector<std::string> names;
+  for (const std::string& value : values) {
+    const std::size_t place = names.size();
+    const std::string letter = {static_cast<char>('A' + place % 26)};
+    const std::string round = place < 26 ? "" : std::to_string(place / 26 + 1);
+    names.push_back(!all_short      ? letter + round
+                    : value.empty() ? "default"
+                                    : value);
+  }
+  return names;
+}
+
+/// What the letters stand for; empty if there are none.
+std::string KeyOfNames(const std::vector<std::string>& values) {
+  const std::vector<std::string> names = ShortNames(values);
+  std::string html;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (names[i] == values[i] || names[i] == "default") continue;
+    html += "<li>" + names[i] + ": " +
+            HtmlEscaped(values[i].empty() ? "default" : values[i]) + "</li>\n";
+  }
+  return html.empty() ? "" : "<ul>\n" + html + "</ul>\n";
+}
+
 /// A figure of all groups; without series if none knows it.
 Chart ChartOfFigure(const std::vector<ResultGroup>& groups,
                     const std::vector<std::string>& keys, std::size_t figure) {
@@ -92,9 +122,7 @@ Chart ChartOfFigure(const std::vector<ResultGroup>& groups,
   Chart chart;
   chart.title = kFigureNames[figure] + (" over " + keys[axis]);
   chart.axis = keys[axis];
-  for (const std::string& value : values) {
-    chart.names.push_back(value.empty() ? "default" : value);
-  }
+  chart.names = ShortNames(values);
   for (const auto& [name, line] : lines) chart.series.push_back(line);
   return chart;
 }
@@ -102,6 +130,16 @@ Chart ChartOfFigure(const std::vector<ResultGroup>& groups,
 void AddCharts(const ResultTable& table, const std::vector<ResultGroup>& groups,
                HtmlPage* page) {
   if (table.keys.empty() || groups.empty()) return;
+  const std::size_t axis = WidestKey(groups, table.keys.size());
+  std::set<std::string> lines;
+  for (const ResultGroup& group : groups) {
+    lines.insert(LineOf(group, table.keys, axis));
+  }
+  if (lines.size() > kLines) {
+    page->Add("<p>No charts: they would have " + std::to_string(lines.size()) +
+              " lines; see summary.csv.</p>\n");
+    return;
+  }
   page->Add(
       "<p>Means over the repeats; bars are their standard errors.</p>\n"
       "<div class=\"charts\">\n");
@@ -109,7 +147,7 @@ void AddCharts(const ResultTable& table, const std::vector<ResultGroup>& groups,
     const Chart chart = ChartOfFigure(groups, table.keys, figure);
     if (!chart.series.empty()) page->AddChart(chart, "sweep");
   }
-  page->Add("</div>\n");
+  page->Add("</div>\n" + KeyOfNames(ValuesOfKey(groups, axis)));
 }
 
 /// A table of cells as one of a page.
@@ -157,7 +195,8 @@ std::string Runs(const ExperimentFolder& folder, const ResultTable& table) {
     if (std::filesystem::exists(folder.Below(page))) {
       name = "<a href=\"" + UrlOf(page) + "\">" + name + "</a>";
     }
-    html += "<li>" + name + " " + HtmlEscaped(row.status) +
+    html += "<li>" + name + " " + HtmlEscaped(SettingsText(row.task.settings)) +
+            ": " + HtmlEscaped(row.status) +
             (row.error.empty() ? "" : ": " + HtmlEscaped(row.error)) +
             "</li>\n";
   }

@@ -29,7 +29,8 @@ Task ReadTaskOfList(const std::string& path, int line) {
   std::string text;
   int lines = 0;
   while (lines < line && std::getline(stream, text)) ++lines;
-  CheckOption(line >= 1 && lines == line, "task", line,
+  CheckOption(line >= 1, "task", line, "a line of " + path + ", from 1");
+  CheckOption(lines == line, "task", line,
               "a line of " + path + ", which has " + std::to_string(lines));
   try {
     return TaskFromJson(nlohmann::ordered_json::parse(text));

@@ -102,6 +102,22 @@ void Fail(TaskState state, int exit_code, std::vector<std::string> last_lines,
   record->last_lines = std::move(last_lines);
 }
 
+/// Whether a task was recorded with what decides its figures now.
+bool IsOfNow(const TaskRecord& record, const RunIdentity& identity,
+             const NamedValues& evaluation) {
+  return record.identity == identity.Hash() &&
+         record.evaluated_by == evaluation;
+}
+
+/// Whether what was recorded of a task is what it would be now. A row of others
+/// has no identity, and always is.
+bool IsStillRecorded(const TaskRecord& record, const RunCommand& command) try {
+  return record.identity.empty() || IsOfNow(record, command.Ask(record.task),
+                                            EvaluationParts(record.task));
+} catch (const InputError&) {
+  return false;  // Running it tells why.
+}
+
 }  // namespace
 
 TaskRunner::TaskRunner(ExperimentFolder folder, const RunCommand& command,
@@ -161,9 +177,7 @@ bool TaskRunner::TakeRecorded(TaskRecord* record) const try {
   }
   const RunIdentity identity = command_.Ask(task);
   const NamedValues evaluation = EvaluationParts(task);
-  const bool same =
-      record->identity == identity.Hash() && record->evaluated_by == evaluation;
-  if (was_recorded && same) return true;
+  if (was_recorded && IsOfNow(*record, identity, evaluation)) return true;
   const RowFile::Row* row =
       rows_.Find(RowKey(identity.Hash(), evaluation), task.sequence);
   if (row == nullptr) return false;
@@ -309,7 +323,10 @@ std::string WhatIsToDo(const ExperimentFolder& folder,
   const auto record = ReadTaskRecord(folder.TaskFolder(task.name));
   if (LivingHolder(folder.Lock(task.name))) return "running";
   const RunState state = ReadRunState(folder.Run(task.name));
-  if (record && record->state == TaskState::kRecorded) return "recorded";
+  if (record && record->state == TaskState::kRecorded) {
+    return IsStillRecorded(*record, command) ? "recorded"
+                                             : "changed: since it was recorded";
+  }
   if (!state.Exists() && !record) return "new";
   if (record && record->state == TaskState::kFailed) {
     return "failed: " + record->Error();

@@ -4,6 +4,7 @@
 
 #include "splitfusion/lib/base/base64.h"
 #include "splitfusion/lib/base/json_file.h"
+#include "splitfusion/lib/page/html_tables.h"
 #include "splitfusion/lib/page/page_bundle.h"
 
 namespace splitfusion {
@@ -65,7 +66,9 @@ std::vector<int> PlacesOf(const Chart& chart) {
 
 std::string Head(const std::vector<PagePart>& programs) {
   std::string policy =
-      "default-src 'none'; img-src data:; style-src " + HashSource(PageStyle());
+      "default-src 'none'; base-uri 'none'; form-action 'none'; "
+      "img-src data:; style-src " +
+      HashSource(PageStyle());
   if (!programs.empty()) policy += "; script-src";
   for (const PagePart& program : programs) policy += " " + HashSource(program);
   return R"(<!DOCTYPE html>
@@ -83,9 +86,11 @@ void HtmlPage::AddChart(const Chart& chart, const std::string& group) {
   const int index =
       places_.try_emplace(PlacesOf(chart), static_cast<int>(places_.size()))
           .first->second;
-  body_ += "<figure class=\"chart\" tabindex=\"0\" data-chart=\"" +
-           std::to_string(charts_.size()) + "\">" + SvgChart(chart) +
-           "<div class=\"plot\"></div></figure>\n";
+  body_ +=
+      "<figure class=\"chart\" role=\"group\" tabindex=\"0\" aria-label=\"" +
+      HtmlEscaped(chart.title) + "\" data-chart=\"" +
+      std::to_string(charts_.size()) + "\">" + SvgChart(chart) +
+      "<div class=\"plot\"></div></figure>\n";
   Json data = {{"title", chart.title}, {"stacked", chart.stacked},
                {"group", group},       {"frames", chart.names.empty()},
                {"x", index},           {"x_title", chart.axis},
@@ -104,12 +109,11 @@ void HtmlPage::AddViewer(const RunScene& scene, const std::string& group) {
   has_viewer_ = true;
   Json header = scene.header;
   header["run"] = group;
-  body_ +=
-      "<div class=\"viewer\"><script type=\"application/json\" "
-      "class=\"scene\">" +
-      DataOf(header) +
-      "</script><script type=\"text/plain\" class=\"arrays\">" + scene.arrays +
-      "</script></div>\n";
+  body_ += "<div class=\"viewer\">" + Heading("Surfaces in 3D") +
+           "<script type=\"application/json\" class=\"scene\">" +
+           DataOf(header) +
+           "</script><script type=\"text/plain\" class=\"arrays\">" +
+           scene.arrays + "</script></div>\n";
 }
 
 std::string HtmlPage::Text() const {

@@ -70,6 +70,7 @@ std::vector<StripMark> MarksOf(int surface, const RunCurves& curves) {
     if (event.surface != surface) continue;
     const auto found = std::lower_bound(curves.frames.begin(),
                                         curves.frames.end(), event.frame);
+    if (found == curves.frames.end()) continue;
     marks.push_back({static_cast<int>(found - curves.frames.begin()),
                      "frame " + std::to_string(event.frame) + ": " +
                          event.class_name + " " + event.what});
@@ -172,7 +173,6 @@ std::string Options(const ReportedRun& run) {
 }
 
 void AddViewer(const ReportedRun& run, HtmlPage* page) {
-  page->Add(Heading("Surfaces in 3D"));
   try {
     page->AddViewer(SceneOfRun(run), run.name);
   } catch (const InputError& error) {

@@ -1,8 +1,10 @@
 #include "splitfusion/lib/page/html_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/page/html_page.h"
@@ -53,13 +55,21 @@ std::string KeyTable(const Json& object) {
 
 std::string RowTable(const Json& rows) {
   if (rows.empty()) return "<p>none</p>\n";
+  std::vector<std::string> keys;
+  for (const Json& row : rows) {
+    for (const auto& [key, value] : row.items()) {
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+        keys.push_back(key);
+      }
+    }
+  }
   std::string html = "<div class=\"wide\"><table class=\"rows\">\n<tr>";
-  for (const auto& [key, value] : rows.front().items()) {
+  for (const std::string& key : keys) {
     html += "<th>" + HtmlEscaped(key) + "</th>";
   }
   for (const Json& row : rows) {
     html += "</tr>\n<tr>";
-    for (const auto& [key, value] : row.items()) html += Cell(value);
+    for (const std::string& key : keys) html += Cell(row.value(key, Json()));
   }
   return html + "</tr>\n</table></div>\n";
 }

@@ -12,7 +12,7 @@ std::string Heading(const std::string& text);
 /// Rows of key and value; numbers are rounded for people.
 std::string KeyTable(const nlohmann::ordered_json& object);
 
-/// Objects with the same keys, one a row.
+/// Objects, one a row; a column for every key that any of them has.
 std::string RowTable(const nlohmann::ordered_json& rows);
 
 /// What is shown only when it is asked for.

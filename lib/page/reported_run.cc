@@ -36,6 +36,40 @@ std::string NameOf(const RunPaths& paths) {
   return (unfinished ? parent : root).filename().string();
 }
 
+/// @throw InputError if it is not as a run of this version writes it.
+void CheckSummary(const RunPaths& paths, const Json& summary) {
+  const auto require = [&](bool right, const std::string& key) {
+    if (right) return;
+    throw InputError(paths.Summary() + ": '" + key +
+                     "' is missing or of another type: expected the summary "
+                     "of a run of this version");
+  };
+  for (const char* key : {"seconds_per_frame", "versions"}) {
+    require(summary.contains(key) && summary[key].is_object(), key);
+  }
+  for (const char* key : {"median", "mean"}) {
+    require(summary["seconds_per_frame"].contains(key), "seconds_per_frame");
+  }
+  require(summary.contains("peak_memory_bytes") &&
+              summary["peak_memory_bytes"].is_number(),
+          "peak_memory_bytes");
+  require(summary.contains("surfaces") && summary["surfaces"].is_array(),
+          "surfaces");
+  for (const Json& surface : summary["surfaces"]) {
+    require(surface.is_object() && surface.contains("label") &&
+                surface["label"].is_string() && surface.contains("id") &&
+                surface["id"].is_number_integer() &&
+                surface.contains("nodes") && surface["nodes"].is_number(),
+            "surfaces");
+  }
+}
+
+/// An object of run.json; null if it is none.
+Json ObjectOf(const Json& marker, const char* key) {
+  const Json value = marker.value(key, Json());
+  return value.is_object() ? value : Json();
+}
+
 }  // namespace
 
 ReportedRun ReportedRunOf(const RunPaths& paths, const Json& summary) {
@@ -45,8 +79,8 @@ ReportedRun ReportedRunOf(const RunPaths& paths, const Json& summary) {
   run.summary = summary;
   const Json marker = ReadJsonOrNull(paths.Marker());
   if (marker.is_object()) {
-    run.options = marker.value("identity_parts", Json());
-    run.defaults = marker.value("defaults", Json());
+    run.options = ObjectOf(marker, "identity_parts");
+    run.defaults = ObjectOf(marker, "defaults");
   }
   run.evaluation = ReadJsonOrNull(paths.Evaluation());
   run.curves =
@@ -61,13 +95,7 @@ ReportedRun ReadReportedRun(const RunPaths& paths) {
     throw InputError(paths.Summary() +
                      ": expected the summary of a run that has ended");
   }
-  for (const char* key :
-       {"surfaces", "seconds_per_frame", "peak_memory_bytes", "versions"}) {
-    if (!summary.contains(key)) {
-      throw InputError(paths.Summary() + ": has no '" + key +
-                       "': expected the summary of a run of this version");
-    }
-  }
+  CheckSummary(paths, summary);
   try {
     return ReportedRunOf(paths, summary);
   } catch (const Json::exception& error) {
@@ -86,8 +114,10 @@ ReportedSolvers ReadReportedSolvers(const std::string& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() == ".svg") files.insert(entry.path().string());
   }
-  ReportedSolvers solvers{std::filesystem::path(folder).filename().string(),
-                          {}};
+  // Without a slash at the end a folder has a name.
+  const std::filesystem::path path =
+      (std::filesystem::absolute(folder) / "").lexically_normal().parent_path();
+  ReportedSolvers solvers{path.filename().string(), {}};
   for (const std::string& file : files) {
     std::ifstream stream(file);
     std::string svg{std::istreambuf_iterator<char>(stream), {}};

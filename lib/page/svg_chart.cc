@@ -172,11 +172,10 @@ std::string AxesFrame(const Axes& axes, const Chart& chart) {
     svg += TextAt(kLeft - 4, axes.Y(k * step) + 4, cv::format("%.6g", k * step),
                   "end");
   }
-  return svg +
-         (chart.names.empty()
-              ? TextAt(kLeft - 4, kTop + kHeight + 14, chart.axis, "end") +
-                    FrameTicks(axes, kTop + kHeight)
-              : NameTicks(axes, chart.names, kTop + kHeight));
+  return svg + (chart.names.empty()
+                    ? TextAt(2, kTop + kHeight + 14, chart.axis) +
+                          FrameTicks(axes, kTop + kHeight)
+                    : NameTicks(axes, chart.names, kTop + kHeight));
 }
 
 std::string Marks(const std::vector<int>& marks, const Axes& axes) {

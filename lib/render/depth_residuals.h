@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_RENDER_DEPTH_RESIDUALS_H_
 #define SPLITFUSION_LIB_RENDER_DEPTH_RESIDUALS_H_
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>

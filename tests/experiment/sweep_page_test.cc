@@ -51,11 +51,23 @@ TEST(SweepPage, DrawsMeansWithTheirStandardErrors) {
                               R"("values":[0.02,0.02,0.02],)"
                               R"("spread":[0.01,)"));
   EXPECT_THAT(page, HasSubstr("6 of 7 runs are complete"));
-  EXPECT_THAT(page, HasSubstr("desk_4ceres_r0 failed: a &lt; b"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("desk_4ceres_r0 weight=4; solver=ceres: failed: a &lt; b"));
   // Figures that no run has are not drawn, nor is what failed.
   EXPECT_THAT(page, HasSubstr(R"("title":"ate_m over weight")"));
   EXPECT_THAT(page, Not(HasSubstr(R"("title":"rpe_m)")));
-  EXPECT_THAT(page, Not(HasSubstr("solver=ceres")));
+  EXPECT_THAT(page, Not(HasSubstr("\"name\":\"desk solver=ceres\"")));
+}
+
+TEST(SweepPage, LongValuesHaveLetters) {
+  const TemporaryFolder folder;
+  ResultTable table = Sample();
+  for (ResultRow& row : table.rows) row.values[0] += ",a value < of many words";
+  const std::string page =
+      SweepPage(ExperimentFolder(folder / ""), table, GroupResults(table), {});
+  EXPECT_THAT(page, HasSubstr(R"("x_names":["A","B","C"])"));
+  EXPECT_THAT(page, HasSubstr("<li>A: 16,a value &lt; of many words</li>"));
 }
 
 TEST(SweepPage, LinksToPagesThatAreThere) {

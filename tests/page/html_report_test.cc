@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/base/base64.h"
+#include "splitfusion/lib/page/html_tables.h"
 #include "splitfusion/lib/page/page_bundle.h"
 #include "splitfusion/lib/page/svg_chart.h"
 #include "splitfusion/lib/report/run_directory.h"
@@ -178,7 +180,30 @@ TEST_F(HtmlReportTest, OfAFolderWithoutARunIsRefused) {
                    "run/frames.jsonl: not as a run of this version writes it");
   folder_.Write("run/summary.json", "{\"surfaces\": []}");
   ExpectInputError([&] { ReadReportedRun(RunPaths(folder_ / "run")); },
-                   "run/summary.json: has no 'seconds_per_frame'");
+                   "run/summary.json: 'seconds_per_frame' is missing");
+}
+
+TEST_F(HtmlReportTest, ASummaryOfAnotherShapeIsRefused) {
+  const auto good = nlohmann::json::parse(folder_.Read("run/summary.json"));
+  const auto refused = [&](const std::string& key,
+                           const nlohmann::json& value) {
+    nlohmann::json summary = good;
+    summary[key] = value;
+    folder_.Write("run/summary.json", summary.dump());
+    ExpectInputError([&] { ReadReportedRun(RunPaths(folder_ / "run")); },
+                     "summary.json: '" + key + "'");
+  };
+  refused("seconds_per_frame", 5);
+  refused("seconds_per_frame", nlohmann::json::object());
+  refused("peak_memory_bytes", "big");
+  refused("surfaces", 5);
+  refused("surfaces", {{{"id", 0}, {"label", nullptr}, {"nodes", 1}}});
+}
+
+TEST_F(HtmlReportTest, RowsHaveAColumnForEveryKey) {
+  EXPECT_TRUE(Contains(RowTable({{{"a", 1}}, {{"a", 2}, {"b", 3}}}),
+                       "<tr><th>a</th><th>b</th></tr>\n"
+                       "<tr><td class=\"n\">1</td><td>-</td></tr>\n"));
 }
 
 TEST(Base64, IsThatOfTheStandard) {

@@ -222,6 +222,10 @@ async function checkPlays() {
   for (const mode of await page.locator('.viewer select').first()
            .locator('option').evaluateAll(all => all.map(one => one.value))) {
     await page.locator('.viewer select').first().selectOption(mode);
+    for (const bar of await page.locator('.viewer .scale').all()) {
+      const {width, height} = await bar.boundingBox();
+      assert.ok(width < 200 && height < 20, `${mode}: a bar of colours`);
+    }
   }
   await page.locator('.viewer select').first().selectOption('color');
   // Something is drawn: not all of the picture is the background.

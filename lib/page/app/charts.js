@@ -93,15 +93,19 @@ function optionsOf(chart, colors, width, group) {
     };
   });
   // Error bars belong to what is seen.
-  const top = Math.max(...chart.series.flatMap(
-      ({values, spread = []}) =>
-          spread.map((half, i) => (values[i] ?? 0) + (half ?? 0))));
+  const ends = sign => chart.series.flatMap(
+      ({values, spread = []}) => values
+          .map((value, i) => value == null ? null :
+                                            value + sign * (spread[i] ?? 0))
+          .filter(value => value != null));
+  const top = Math.max(...ends(1)), bottom = Math.min(...ends(-1));
   const marks = chart.marks.map(i => chart.x[i]);
   return {
     width, height: 190, title: chart.title,
     scales: {x: {time: false, range: names ? [-.5, names.length - .5] : null},
-             y: {range: (plot, low, high) =>
-                     [Math.min(0, low), Math.max(high, top) * 1.05 || 1]}},
+             y: {range: (plot, low, high) => names ?
+                 uPlot.rangeNum(bottom, Math.max(high, top), .1, false) :
+                 [Math.min(0, low), high * 1.05 || 1]}},
     axes,
     legend: {live: true},
     series: [{label: chart.x_title,
@@ -109,7 +113,11 @@ function optionsOf(chart, colors, width, group) {
                   x == null ? '-' : names ? names[x] : rounded(x)}, ...series],
     cursor: {y: false, sync: {key: group, scales: ['x', null]},
              drag: {x: true, y: false}},
-    hooks: {draw: [plot => drawMarks(plot, marks),
+    hooks: {setScale: [(plot, scale) => {
+      const {min, max} = plot.scales.x;
+      if (scale === 'x') ranges.set(group, {min, max});
+    }],
+            draw: [plot => drawMarks(plot, marks),
                    plot => drawSpreads(plot, chart.series)]},
   };
 }
@@ -128,13 +136,21 @@ function setCursor(plot, place) {
 /** Charts that were drawn, by group: they are zoomed together. */
 const drawn = new Map();
 
+/** What is shown of the axis in all charts of a group. */
+const ranges = new Map();
+
+function setRange(group, range) {
+  for (const plot of drawn.get(group)) plot.setScale('x', range);
+}
+
 /** Zooms about the cursor, or the middle. */
 function zoom(plot, factor, group) {
   const {min, max} = plot.scales.x;
   const at = plot.cursor.idx == null ? (min + max) / 2 :
                                        plot.data[0][plot.cursor.idx];
-  const range = {min: at - (at - min) * factor, max: at + (max - at) * factor};
-  for (const other of drawn.get(group)) other.setScale('x', range);
+  const [first, last] = [plot.data[0][0], plot.data[0].at(-1)];
+  setRange(group, {min: Math.max(at - (at - min) * factor, first),
+                   max: Math.min(at + (max - at) * factor, last)});
 }
 
 /** Shows all there is. */
@@ -169,11 +185,13 @@ function onKey(event, plot, group, show) {
 function draw(figure, chart, colors) {
   const place = figure.querySelector('.plot');
   figure.classList.add('drawn');
+  const range = ranges.get(chart.group);  // Of those that were drawn before.
   const plot = new uPlot(
       optionsOf(chart, colors, place.clientWidth, chart.group), rowsOf(chart),
       place);
   figure.plot = plot;
   drawn.set(chart.group, [...(drawn.get(chart.group) ?? []), plot]);
+  if (range) plot.setScale('x', range);
   const show = x => chart.frames && showFrame(chart.group, x, figure);
   new ResizeObserver(() => {
     if (place.clientWidth > 0) {

@@ -9,14 +9,18 @@ import {
   blendValues, nodeMaps, visibleTriangles, warpNodes, warpVertices,
 } from './warp.js';
 
-const kUnknown = [.55, .55, .55];
+const kUnknown = [.5, .5, .5];
 
-/** Blue over white to red, of 0 to 1. */
+/** Blue over white to red, of 0 to 1, as displays take it. */
 export function heat(share) {
   const s = Math.min(Math.max(share, 0), 1);
-  return s < .5 ? [.23 + 1.5 * s, .3 + 1.36 * s, .75 + .5 * s] :
-                  [.98 - .5 * (s - .5), .98 - 1.9 * (s - .5),
-                   1 - 1.9 * (s - .5)];
+  return s < .5 ? [.2 + 1.6 * s, .35 + 1.3 * s, .8 + .4 * s] :
+                  [1 - .5 * (s - .5), 1 - 1.8 * (s - .5), 1 - 1.8 * (s - .5)];
+}
+
+/** The same as light, which three.js reckons with. */
+function light(color) {
+  return color.map(value => value ** 2.2);
 }
 
 /** How a mesh is shown. */
@@ -134,7 +138,8 @@ export class SurfaceView {
     }
     for (let i = 0; i < this.values.length; ++i) {
       const value = this.values[i] * field.unit / field.top;
-      const [r, g, b] = Number.isNaN(value) ? kUnknown : heat(value);
+      const [r, g, b] = light(
+          Number.isNaN(value) ? kUnknown : heat(value));
       out[3 * i] = r;
       out[3 * i + 1] = g;
       out[3 * i + 2] = b;

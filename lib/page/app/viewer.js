@@ -11,6 +11,8 @@ import {heat, SurfaceView} from './surface_view.js';
 import {inflate, unpackSurface} from './unpack.js';
 
 const kFramesPerSecond = 15;
+// Browsers take the picture from the oldest of more than about 16.
+const kViewers = 8;
 
 /** An element with attributes and children. */
 function element(name, attributes = {}, ...children) {
@@ -30,12 +32,13 @@ function scaleOf(field) {
   const canvas = element('canvas', {className: 'scale', width: 120, height: 1});
   const context = canvas.getContext('2d');
   for (let x = 0; x < 120; ++x) {
-    const [r, g, b] = heat(x / 119).map(c => Math.round(255 * c ** (1 / 2.2)));
+    const [r, g, b] = heat(x / 119).map(c => Math.round(255 * c));
     context.fillStyle = `rgb(${r},${g},${b})`;
     context.fillRect(x, 0, 1, 1);
   }
   return element('span', {}, '0 ', canvas,
-                 ` ${1000 * field.top} mm and more; grey: not known`);
+                 ` ${1000 * field.top} mm and more; grey: not known; ` +
+                 'a background that does not deform has its colours');
 }
 
 class Viewer {
@@ -221,17 +224,18 @@ class Viewer {
   toggle() {
     this.playing = !this.playing;
     this.button.textContent = this.playing ? 'Stop' : 'Play';
+    cancelAnimationFrame(this.next);
+    if (!this.playing) return;
     let before = null;
     const next = now => {
-      if (!this.playing) return;
       before ??= now;
       if (now - before >= 1000 / kFramesPerSecond) {
         before = now;
         this.#step((this.index + 1) % this.data.frames.length);
       }
-      requestAnimationFrame(next);
+      this.next = requestAnimationFrame(next);
     };
-    requestAnimationFrame(next);
+    this.next = requestAnimationFrame(next);
   }
 }
 
@@ -246,10 +250,12 @@ async function makeViewer(place) {
 }
 
 const viewers = Promise.all(
-    [...document.querySelectorAll('.viewer')].map(async place => {
+    [...document.querySelectorAll('.viewer')].map(async (place, i) => {
       try {
+        if (i >= kViewers) throw new Error('the page has too many');
         return await makeViewer(place);
       } catch (error) {
+        for (const canvas of place.querySelectorAll('canvas')) canvas.remove();
         place.append(
             element('p', {textContent: `No viewer: ${error.message}`}));
         return null;
