@@ -16,6 +16,7 @@
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/frame_report.h"
 #include "splitfusion/lib/tracking/frame_matcher.h"
+#include "splitfusion/lib/tracking/key_frames.h"
 #include "splitfusion/lib/tracking/last_sights.h"
 #include "splitfusion/lib/tracking/point_motion.h"
 #include "splitfusion/lib/tracking/point_tracks.h"
@@ -74,6 +75,14 @@ class FrameTracker {
   std::optional<Rigid3d> MotionSinceSight(const Surface& surface,
                                           const LiveView& live) const;
 
+  /// The background was tracked: a camera that is lost will be looked for here.
+  void KeepCamera(const Surface& background, const LiveView& live) {
+    key_frames_.Keep(live, MeanRigidMotion(background.graph()));
+  }
+  /// As KeyFrames::Find().
+  std::vector<Rigid3d> CameraPlaces(const LiveView& live) const {
+    return key_frames_.Find(live);
+  }
   /// Ends a frame: keeps what the next one is compared with.
   void Keep(const LiveView& live);
 
@@ -94,7 +103,7 @@ class FrameTracker {
   /// Saves or restores it between two frames, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(point_tracks_, matcher_, sights_, term_states_);
+    (*archive)(point_tracks_, matcher_, sights_, key_frames_, term_states_);
   }
 
  private:
@@ -111,6 +120,7 @@ class FrameTracker {
   PointTracks point_tracks_;
   FrameMatcher matcher_;
   LastSights sights_;
+  KeyFrames key_frames_;
   double match_ratio_;
   SurfaceTracker tracker_;
   /// What the terms of a surface keep of it.

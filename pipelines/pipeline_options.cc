@@ -45,6 +45,7 @@ void PipelineOptions::List(OptionList* list) {
   list->Part("", &tracker);
   list->Part("", &point_tracks);
   list->Part("", &match);
+  list->Part("key_frame_", &key_frames);
   list->Demand(match.feature_model.empty() ||
                    (match.features && tracker.part_start.parts.count > 0),
                "feature_model",

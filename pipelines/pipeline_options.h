@@ -9,6 +9,7 @@
 #include "splitfusion/lib/render/ray_caster.h"
 #include "splitfusion/lib/split/split_options.h"
 #include "splitfusion/lib/tracking/frame_matcher.h"
+#include "splitfusion/lib/tracking/key_frames.h"
 #include "splitfusion/lib/tracking/point_tracks.h"
 #include "splitfusion/pipelines/tracker_options.h"
 
@@ -33,6 +34,8 @@ struct PipelineOptions {
   PointTrackOptions point_tracks;
   /// Matches between two frames, for where parts start.
   MatchOptions match;
+  /// Frames by which a lost camera is found.
+  KeyFrameOptions key_frames;
   /// Minimiser.
   SolverOptions solver;
   /// Motions of what was hidden, once all frames are known.

@@ -16,7 +16,6 @@
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/median.h"
-#include "splitfusion/lib/calibration/color_camera_estimate.h"
 #include "splitfusion/lib/model/surface_uncertainty.h"
 #include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/report/frame_pictures.h"
@@ -49,30 +48,7 @@ std::set<std::string> TermsInUse(const SurfaceEnergies& energies) {
   return names;
 }
 
-/// `reader` itself.
-const ImageFolderReader& Checked(const ImageFolderReader& reader) {
-  if (!reader.options().skip_bad_frames) reader.CheckFrames();
-  return reader;
-}
-
 }  // namespace
-
-Reconstruction::Reconstruction(const std::string& sequence,
-                               const ReaderOptions& reading,
-                               const PipelineOptions& options,
-                               const LabelTable& labels,
-                               const SegmenterMaker& segmenter,
-                               const Registries& registries)
-    : reader(sequence, reading, registries.formats),
-      fusion(Checked(reader).camera(), options, labels, segmenter(reader),
-             registries) {
-  fusion.set_color_camera(reader.calibration().color);
-  if (reader.calibration().color || reading.color_camera != "auto") return;
-  const ColorCameraEstimate estimate = EstimateColorCamera(reader);
-  if (!estimate.IsNeeded()) return;
-  fusion.set_color_camera(estimate.camera);
-  note = estimate.Text();
-}
 
 SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
                          const Maker& make, RunFolder* folder,
@@ -349,6 +325,10 @@ void SequenceRun::WriteSurfaces(bool all_frames) {
   frames_.reset();  // What reads ahead may change what the reader gives.
   Stopwatch stopwatch;
   const SplitFusion& fusion = work_->fusion;
+  if (all_frames) {
+    work_->fusion.PlaceLostCamera();
+    directory_->WriteTrajectory(fusion.trajectory());
+  }
   work_->fusion.Finish();
   SurfaceModels models = ModelsOf(fusion);
   std::error_code ignored;  // That of an end before this one.

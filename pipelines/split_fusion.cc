@@ -70,6 +70,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
 
 void SplitFusion::PredictMotions(const std::optional<Rigid3d>& given) {
   if (surfaces_.empty()) return;
+  camera_was_lost_ = background_state_ != TrackState::kTracked;
   const Rigid3d world_from_camera = WorldFromCamera();
   const Rigid3d camera_motion =
       given ? (world_from_given_ * *given).inverse() * world_from_camera
@@ -146,8 +147,10 @@ void SplitFusion::TrackCamera(bool given, FrameReport* report) {
     report->surfaces.emplace_back().id = 0;
     return;
   }
-  const std::vector<ModelSample> samples = BackgroundInView(report);
+  const Rigid3d predicted = MeanRigidMotion(surfaces_.at(0)->graph());
+  std::vector<ModelSample> samples = BackgroundInView(report);
   TrackBackground(samples, predictors_.at(0).velocity().inverse(), report);
+  if (!IsCameraFound(*report)) FindCamera(predicted, &samples, report);
   if (SetMoversApart(samples, report)) {
     TrackBackground(samples, Rigid3d::Identity(), report);
   }
@@ -163,13 +166,18 @@ void SplitFusion::TrackBackground(const std::vector<ModelSample>& samples,
       TrackSurface(samples, still, /*goes_on=*/true, &background, &surface)
           ? TrackState::kTracked
           : TrackState::kLost;
-  // A camera motion moves every surface.
-  const Rigid3d correction =
-      MeanRigidMotion(background.graph()) * before.inverse();
-  for (const auto& [id, object] : surfaces_) {
-    if (id != 0) ApplyRigidMotion(correction, object->mutable_graph());
-  }
+  MoveObjects(MeanRigidMotion(background.graph()) * before.inverse());
   report->surfaces.assign(1, std::move(surface));
+}
+
+void SplitFusion::MoveObjects(const Rigid3d& camera_motion) {
+  for (const auto& [id, object] : surfaces_) {
+    // Where an object was seen is known but in the frame of a lost camera.
+    if (id == 0 || (camera_was_lost_ && StateOf(id) == TrackState::kTracked)) {
+      continue;
+    }
+    ApplyRigidMotion(camera_motion, object->mutable_graph());
+  }
 }
 
 bool SplitFusion::SetMoversApart(const std::vector<ModelSample>& samples,
@@ -248,30 +256,6 @@ TrackState SplitFusion::StateOf(int id) const {
   return id == 0 ? background_state_ : splitter_.tracks().at(id).state;
 }
 
-std::vector<Rigid3d> SplitFusion::WaysToWhereSeen(const Surface& surface,
-                                                  SurfaceReport* report) const {
-  const Stopwatch stopwatch;
-  std::vector<Rigid3d> ways;
-  const auto add = [&](const std::optional<Rigid3d>& way) {
-    if (way) ways.push_back(*way);
-  };
-  if (options_.last_sights) add(tracker_->MotionSinceSight(surface, live_));
-  const double deviation = options_.split.assignment.PlaceDeviation(
-      predictors_.at(surface.id()).frames_since() + 1);
-  const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
-  const std::optional<Rigid3d> shift =
-      FindTranslation(VisibleSamples(RenderAlone(surface, camera), surface,
-                                     options_.render_stride),
-                      WarpField(surface.graph()), live_,
-                      static_cast<std::uint16_t>(surface.id()), deviation);
-  add(shift);
-  // Where it was predicted a tracked one has just failed.
-  const bool failed = StateOf(surface.id()) == TrackState::kTracked;
-  if (!shift && !failed) ways.push_back(Rigid3d::Identity());
-  report->render_seconds += stopwatch.Seconds();
-  return ways;
-}
-
 bool SplitFusion::TrackObject(bool goes_on, Surface* surface,
                               SurfaceReport* report) {
   Stopwatch stopwatch;
@@ -283,41 +267,6 @@ bool SplitFusion::TrackObject(bool goes_on, Surface* surface,
                         predictors_.at(surface->id()).velocity().inverse() *
                         world_from_camera;
   return TrackSurface(samples, still, goes_on, surface, report);
-}
-
-bool SplitFusion::TrackWhereSeen(Surface* surface, SurfaceReport* report) {
-  const DeformationGraph before = surface->graph();
-  const PointTracks tracks_before = tracker_->point_tracks();
-  const std::vector<Rigid3d> ways = WaysToWhereSeen(*surface, report);
-  const PinholeCamera camera = camera_.Subsampled(options_.render_stride);
-  for (const Rigid3d& way : ways) {
-    ApplyRigidMotion(way, surface->mutable_graph());
-    rendering_ = RenderMeshes(surfaces_, camera);
-    if (TrackObject(/*goes_on=*/false, surface, report) &&
-        ExplainsItsPixels(report)) {
-      return true;
-    }
-    *surface->mutable_graph() = before;
-    tracker_->set_point_tracks(tracks_before);
-  }
-  if (!ways.empty()) rendering_ = RenderMeshes(surfaces_, camera);
-  return false;
-}
-
-bool SplitFusion::ExplainsItsPixels(SurfaceReport* report) const {
-  const TrackingRound& last = report->rounds.back();
-  const int step = std::max(last.stride, options_.render_stride);
-  int certain = 0;
-  for (int v = 0; v < live_.depth.rows; v += step) {
-    for (int u = 0; u < live_.depth.cols; u += step) {
-      certain += IsCertain(live_, report->id, v, u);
-    }
-  }
-  if (last.association.accepted >= options_.min_coverage * certain) return true;
-  report->reason = "only " + std::to_string(last.association.accepted) +
-                   " model points for " + std::to_string(certain) +
-                   " live pixels at stride " + std::to_string(step);
-  return false;
 }
 
 void SplitFusion::Fuse(FrameReport* report) {
@@ -334,47 +283,6 @@ void SplitFusion::Fuse(FrameReport* report) {
     reports[i].torn_triangles += surface.Tear(live_);
     reports[i].mesh_seconds = stopwatch.Restart();
   });
-}
-
-bool SplitFusion::InPlainView(const SurfaceReport& report) const {
-  const double least =
-      std::max(options_.min_birth_area * camera_.width * camera_.height,
-               0.5 * splitter_.tracks().at(report.id).usual_pixels);
-  return report.pixels >= least;
-}
-
-void SplitFusion::KeepSights(const FrameReport& report) {
-  if (!options_.last_sights) return;
-  for (const SurfaceReport& object : report.surfaces) {
-    if (object.id != 0 && object.state == TrackState::kTracked &&
-        InPlainView(object)) {
-      tracker_->KeepSight(*surfaces_.at(object.id), live_);
-    }
-  }
-}
-
-void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
-  for (SurfaceReport& object : report->surfaces) {
-    if (object.id == 0) continue;
-    Track& track = *splitter_.mutable_track(object.id);
-    if (track.state == TrackState::kTracked) {
-      const double share = track.usual_pixels > 0 ? 1.0 / kUsualFrames : 1;
-      track.usual_pixels += share * (object.pixels - track.usual_pixels);
-    }
-    // Of a cost that is no number the model is not to blame.
-    if (!object.rounds.empty() && !object.rounds.back().solver.usable) continue;
-    Surface& surface = *surfaces_.at(object.id);
-    // Joined models of one node each would share it in Eq. 3.
-    if (track.state != TrackState::kLost ||
-        track.lost_frames < options_.max_lost || surface.graph().rigid() ||
-        !surface.Reanchor(live_)) {
-      continue;
-    }
-    track.Apply(TrackEvent::kFits);
-    object.event = "reanchored";
-    tracker_->Forget(object.id);
-    predictors_.erase(object.id);
-  }
 }
 
 void SplitFusion::FollowTracks() {
@@ -457,7 +365,11 @@ void SplitFusion::Record(const Frame& frame, FrameReport* report) {
         tracked ? surface.SeenNodes(live_) : std::vector<char>());
     const Rigid3d motion = MeanRigidMotion(surface.graph());
     const Rigid3d placed = id == 0 ? motion : world_from_camera * motion;
-    predictors_[id].Record(placed, Center(surface.graph()), StateOf(id));
+    // Of a lost camera nobody knows where in the world its objects are.
+    predictors_[id].Record(placed, Center(surface.graph()),
+                           background_state_ == TrackState::kTracked
+                               ? StateOf(id)
+                               : TrackState::kLost);
     report->render_seconds += surface_report.render_seconds;
     report->associate_seconds += surface_report.associate_seconds;
     report->solve_seconds += surface_report.solve_seconds;

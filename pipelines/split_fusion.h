@@ -2,6 +2,7 @@
 #define SPLITFUSION_PIPELINES_SPLIT_FUSION_H_
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/lib/split/surface_splitter.h"
 #include "splitfusion/lib/tracking/motion_predictor.h"
+#include "splitfusion/lib/tracking/usual_misfit.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/registries.h"
@@ -61,6 +63,10 @@ class SplitFusion {
   /// The rest of it.
   FrameReport ProcessFrame(PreparedFrame prepared);
 
+  /// Once all frames are known: the poses of frames in which the camera was
+  /// lost go smoothly from the last known one to the next, see PoseAmid().
+  void PlaceLostCamera();
+
   /// Extracts the final meshes of all surfaces.
   void Finish();
 
@@ -89,7 +95,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 17;  // Format.
+  static constexpr std::uint32_t kStateVersion = 18;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -117,6 +123,28 @@ class SplitFusion {
   /// TrackSurface() does, and all other surfaces with it.
   void TrackBackground(const std::vector<ModelSample>& samples,
                        const Rigid3d& still, FrameReport* report);
+  /// A camera motion moves every surface.
+  void MoveObjects(const Rigid3d& camera_motion);
+  /// Where the background was tracked to, and how well it fits there.
+  struct CameraFit {
+    Rigid3d camera_from_world = Rigid3d::Identity();
+    TrackState state = TrackState::kLost;
+    SurfaceReport report;
+    double misfit = std::numeric_limits<double>::infinity();  ///< If tracked.
+  };
+  CameraFit FitOfCamera(const FrameReport& report) const;
+  /// Whether the background was tracked, and fits about as well as before.
+  bool FitsAsUsual(const FrameReport& report) const;
+  /// Whether tracking came to an end that fits as usual.
+  bool IsCameraFound(const FrameReport& report) const;
+  /// Tracks the background from where its landmarks say that the camera is; the
+  /// place that fits best counts. A camera that neither fits as usual nor is
+  /// known by landmarks is lost, and is where it was predicted. `samples`: what
+  /// is in view.
+  void FindCamera(const Rigid3d& predicted, std::vector<ModelSample>* samples,
+                  FrameReport* report);
+  /// Places the camera, and all surfaces with it.
+  void MoveCamera(const Rigid3d& camera_from_world);
   /// Sets standing objects apart that move on their own, as the camera sees
   /// it that is tracked without any of them: the background forgets them, and
   /// their pixels are no part of it. Whether there are any.
@@ -179,6 +207,8 @@ class SplitFusion {
   /// World, the first camera, from that of given poses.
   Rigid3d world_from_given_ = Rigid3d::Identity();
   TrackState background_state_ = TrackState::kTracked;  ///< Of this frame.
+  bool camera_was_lost_ = false;  ///< In the frame before.
+  UsualMisfit camera_misfit_;
 };
 
 }  // namespace splitfusion

@@ -37,7 +37,7 @@ void SplitFusion::Serialize(Archive* archive) {
   archive->Section("split fusion");
   ExpectSameCamera(archive, camera_);
   (*archive)(splitter_, trajectory_, live_.labels, predictors_, *tracker_,
-             world_from_given_, standing_);
+             world_from_given_, standing_, background_state_, camera_misfit_);
   SerializeSurfaces(archive);
 }
 

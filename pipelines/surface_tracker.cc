@@ -201,10 +201,17 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
   const Association association =
       target.associator.Associate(samples, warp, stage.stride, stage.gates);
   const AssociationCounts& counts = association.counts;
+  int compared = counts.accepted + counts.Count(Rejection::kMisfit);
+  // The room is still there behind what moves before it.
+  if (target.surface != 0) {
+    compared = counts.model_points;
+  }
   // Truncated; a sample that fits nowhere counts 1 for each.
-  double sum = 2.0 * (counts.Count(Rejection::kMisfit) +
-                      counts.Count(Rejection::kAbsent) +
-                      counts.Count(Rejection::kOccluded));
+  double sum = 2.0 * counts.Count(Rejection::kMisfit);
+  if (target.surface != 0) {
+    sum += 2.0 * (counts.Count(Rejection::kAbsent) +
+                  counts.Count(Rejection::kOccluded));
+  }
   for (const Correspondence& c : association.correspondences) {
     const double distance =
         c.warped_normal.dot(warp.WarpPoint(c.model.skinning, c.model.point) -
@@ -214,7 +221,7 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
     sum += std::min(1.0, distance * distance) +
            std::min(1.0, difference * difference);
   }
-  return sum / std::max(1, counts.model_points);
+  return sum / std::max(1, compared);
 }
 
 bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
@@ -245,6 +252,7 @@ bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
       report->reason = ReasonForMisfit(*report);
     }
   }
+  report->misfit = Misfit(samples, target, *graph);
   return report->reason.empty();
 }
 
@@ -295,6 +303,7 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
   const std::vector<TrackingStage> stages = RigidStagesOf(*graph);
   RoundFacts facts;
   facts.rounds = TotalRounds(stages);
+  report->settled = false;
   for (const TrackingStage& stage : stages) {
     const TrackingStage fitted =
         FittedStage(stage, options_.min_samples, samples);
@@ -303,6 +312,7 @@ void SurfaceTracker::TrackRigid(const std::vector<ModelSample>& samples,
       const bool settled =
           RunRound(warped, rigid, fitted, facts, 1.0, before, &motion, report);
       ++facts.round;
+      report->settled |= settled;
       if (settled) break;
     }
     ++facts.stage;

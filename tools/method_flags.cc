@@ -45,6 +45,26 @@ std::string Row(const Option& option, const Registries& registries) {
          expected + " | " + option.help + " |\n";
 }
 
+/// Sets those of `options` whose flags were given, and the flags to all.
+template <typename Options>
+void TakeGiven(Options* options, Options* flags) {
+  OptionList list, given;
+  options->List(&list);
+  flags->List(&given);
+  for (std::size_t i = 0; i < list.options().size(); ++i) {
+    const Option& option = list.options()[i];
+    if (gflags::GetCommandLineFlagInfoOrDie(option.name.c_str()).is_default) {
+      continue;
+    }
+    std::visit(
+        [&](auto* value) {
+          *value = *std::get<decltype(value)>(given.options()[i].value);
+        },
+        option.value);
+  }
+  *flags = *options;
+}
+
 }  // namespace
 
 void RegisterMethodFlags() {
@@ -67,24 +87,10 @@ void RegisterMethodFlags() {
 
 PipelineOptions& MethodFlags() { return Storage().options; }
 
-const DepthOptions& DepthFlags() { return Storage().depth; }
+void TakeDepthFlags(DepthOptions* depth) { TakeGiven(depth, &Storage().depth); }
 
 void TakeMethodFlags(PipelineOptions* options) {
-  OptionList list;
-  options->List(&list);
-  for (std::size_t i = 0; i < list.options().size(); ++i) {
-    const Option& option = list.options()[i];
-    if (gflags::GetCommandLineFlagInfoOrDie(option.name.c_str()).is_default) {
-      continue;
-    }
-    std::visit(
-        [&](auto* value) {
-          *value =
-              *std::get<decltype(value)>(Storage().list.options()[i].value);
-        },
-        option.value);
-  }
-  MethodFlags() = *options;
+  TakeGiven(options, &Storage().options);
 }
 
 std::string MethodOptionsMarkdown(const Registries& registries) {

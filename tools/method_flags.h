@@ -19,8 +19,9 @@ void RegisterMethodFlags();
 /// been given.
 PipelineOptions& MethodFlags();
 
-/// What is known of the depth sensor, as the flags state it.
-const DepthOptions& DepthFlags();
+/// Sets what flags state of the depth sensor; the rest stays as it is, as a
+/// sensor's name left it, and its flags follow.
+void TakeDepthFlags(DepthOptions* depth);
 
 /// Sets the options whose flags were given; the others stay as they are, as a
 /// preset left them, and their flags follow.

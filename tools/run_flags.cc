@@ -11,8 +11,11 @@
 #include "sequence_flags.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/energy/surface_energies.h"
+#include "splitfusion/lib/sequence/sensors.h"
 #include "splitfusion/pipelines/presets.h"
 
+DEFINE_string(sensor, "kinect_v1",
+              "kinect_v1, kinect_azure, realsense or ideal.");
 DEFINE_string(preset, "splitfusion", "Method, by name; see docs/presets.md.");
 DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
 DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
@@ -52,7 +55,8 @@ ReaderOptions ReaderOptionsFromFlags() {
   options.skip_bad_frames = FLAGS_skip_bad_frames;
   options.trajectory = FLAGS_trajectory;
   options.color_camera = FLAGS_color_camera;
-  options.depth = DepthFlags();
+  options.depth = SensorOptions(FLAGS_sensor);
+  TakeDepthFlags(&options.depth);
   if (!FLAGS_intrinsics.empty()) {
     options.camera = ParseIntrinsics(FLAGS_intrinsics);
   }

@@ -9,6 +9,8 @@
 
 #include "splitfusion/lib/association/lost_parts.h"
 #include "splitfusion/lib/base/median.h"
+#include "splitfusion/lib/base/pi.h"
+#include "splitfusion/lib/geometry/depth_comparison.h"
 
 namespace splitfusion {
 namespace {
@@ -30,14 +32,14 @@ void RemoveCommonBrightness(std::vector<Correspondence>* correspondences) {
 struct PointwiseAssociator::Gates {
   explicit Gates(const AssociationGates& gates)
       : distance(static_cast<float>(gates.distance)),
-        min_normal_cosine(static_cast<float>(std::cos(gates.normal_angle))),
+        normal_angle(static_cast<float>(gates.normal_angle)),
         min_view_cosine(static_cast<float>(std::cos(gates.grazing_angle))),
         color_level(gates.coarse_color ? 1 : 0) {}
 
-  float distance;           // Metres.
-  float min_normal_cosine;  // Between the normals.
-  float min_view_cosine;    // Between live normal and view ray.
-  int color_level;          // Of LiveView::grey.
+  float distance;         // Metres.
+  float normal_angle;     // Radians.
+  float min_view_cosine;  // Between live normal and view ray.
+  int color_level;        // Of LiveView::grey.
 };
 
 PointwiseAssociator::PointwiseAssociator(const LiveView& live,
@@ -89,7 +91,12 @@ PointwiseAssociator::Outcome PointwiseAssociator::Match(
   if ((point - out->target).squaredNorm() > gate * gate) return kDistance;
   out->target_normal = ToEigen(live_.map.normals(v, u));
   out->warped_normal = warp.WarpNormal(sample.skinning, sample.normal);
-  if (out->warped_normal.dot(out->target_normal) < gates.min_normal_cosine) {
+  const float angle =
+      gates.normal_angle +
+      static_cast<float>(kNoiseSigmas) *
+          live_.map.NormalSigma(out->target.z(), live_.camera.fx);
+  if (out->warped_normal.dot(out->target_normal) <
+      std::cos(std::min(angle, kPi<float>))) {
     return kNormalAngle;
   }
   if (-out->target_normal.dot(out->target) <

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/core.hpp>
 
 #include "splitfusion/lib/base/error.h"
@@ -85,6 +86,14 @@ class NormalEstimator {
 
 }  // namespace
 
+float PointMap::NormalSigma(float z, double focal) const {
+  if (radius == 0 || !(z > 0)) return 0;
+  // Sum of the squared distances from the middle, in columns, of all pixels.
+  const int side = 2 * radius + 1;
+  const double spread = std::sqrt(side * side * (side * side - 1) / 12.0);
+  return static_cast<float>(noise.Sigma(z) * focal / (z * spread));
+}
+
 void PointMapOptions::List(OptionList* list) {
   list->Number("radius", &radius, {1, 20}, "pixels",
                "Half width of the window that a live normal is fitted to.");
@@ -110,6 +119,7 @@ PointMap ComputePointMap(const cv::Mat& depth, const PinholeCamera& camera,
   options.Check();
   PointMap map;
   map.noise = camera.noise;
+  map.radius = options.radius;
   map.points.create(depth.size());
   map.normals.create(depth.size());
   const NormalEstimator estimator(depth, camera, options);

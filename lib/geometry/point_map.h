@@ -15,6 +15,12 @@ struct PointMap {
   cv::Mat_<cv::Vec3f> points;   ///< HxW; (0,0,0) where there is no depth.
   cv::Mat_<cv::Vec3f> normals;  ///< HxW; towards the camera; 0 = unknown.
   DepthNoise noise{};           ///< Of the depth.
+  int radius = 0;  ///< Of the windows of the normals, pixels; 0: exact ones.
+
+  /// Standard deviation of a normal about either axis, radians, where the depth
+  /// is `z`, metres: of the slope of the plane through the window's points,
+  /// whose noise is independent; `focal` pixels.
+  float NormalSigma(float z, double focal) const;
 };
 
 /// A point or a normal of such a map.

@@ -275,6 +275,13 @@ void Surface::RecordMotions(int frame, bool tracked, std::vector<char> seen) {
   graph_.first_seen.resize(graph_.size(), frame);
 }
 
+void Surface::PlaceIn(int frame, const Rigid3d& motion) {
+  for (FrameMotions& motions : history_.frames) {
+    if (motions.frame == frame)
+      motions.motions = MakeRigidGraph(motion).motions;
+  }
+}
+
 std::vector<Eigen::Vector3f> Surface::WarpedVertices() const {
   const WarpField warp(graph_);
   std::vector<Eigen::Vector3f> warped(mesh_.vertices.size());

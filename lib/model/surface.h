@@ -103,6 +103,10 @@ class Surface {
   /// this frame on.
   void RecordMotions(int frame, bool tracked, std::vector<char> seen = {});
 
+  /// Sets the motion of a frame of a rigid surface's history, camera from
+  /// canonical, metres.
+  void PlaceIn(int frame, const Rigid3d& motion);
+
   /// Mesh vertices under the current motions, camera frame.
   std::vector<Eigen::Vector3f> WarpedVertices() const;
 

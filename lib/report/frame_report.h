@@ -43,8 +43,13 @@ struct SurfaceReport {
   std::string label;                        ///< Class name.
   SurfaceKind kind = SurfaceKind::kRigid;   ///< How it is tracked.
   TrackState state = TrackState::kTracked;  ///< After this frame.
-  /// "born", "reanchored" (its model begins anew), or empty.
+  /// "born", "reanchored" (its model begins anew), "relocalized" (the camera
+  /// was found by landmarks), or empty.
   std::string event;
+  bool settled = true;  ///< Whether any rigid stage came to an end.
+  /// How badly the model's points in view fit, 0 to 2, each by distance and
+  /// grey value: their mean; one that is somewhere else for sure counts 2.
+  double misfit = 0;
   std::string reason;       ///< Why tracking failed; empty if it did not.
   double exposure = 1;      ///< Share of the model that nothing hides.
   int pixels = 0;           ///< Live pixels with depth of this surface.

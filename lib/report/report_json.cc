@@ -67,6 +67,8 @@ void to_json(Json& json, const SurfaceReport& surface) {
           {"kind", ToString(surface.kind)},
           {"state", ToString(surface.state)},
           {"event", surface.event},
+          {"settled", surface.settled},
+          {"misfit", surface.misfit},
           {"track_points", surface.track_points},
           {"started_parts", surface.started_parts},
           {"refuted_nodes", surface.refuted_nodes},

@@ -65,6 +65,13 @@ class RunDirectory {
   /// @throw InputError if a file cannot be written.
   void AddFrame(const FrameReport& report, const TimedPose& pose);
 
+  /// Writes trajectory.txt anew, once all frames are known.
+  ///
+  /// @throw InputError if it cannot be written.
+  void WriteTrajectory(const Trajectory& trajectory) const {
+    WriteTumTrajectory(paths_.Trajectory(), trajectory);
+  }
+
   /// Counts time spent on writing outside of this class (meshes, pictures) to
   /// `seconds_writing`.
   void AddWritingSeconds(double seconds) { seconds_writing_ += seconds; }

@@ -39,11 +39,11 @@ enum class PublishingPhase {
 /// Content of RUN/run.json: by this file a folder is known to be a run, and
 /// what in it is the run's. Format: docs/report_format.md.
 struct RunMarker {
-  std::string id;  ///< Of this very run, RandomId().
+  std::string id;                          ///< Of this very run, RandomId().
   RunStatus status = RunStatus::kRunning;  ///< How far it has come.
-  std::string error;            ///< Of a failed run, one line.
-  std::vector<int> resumed_at;  ///< Frames from which it went on.
-  RunIdentity identity;         ///< What decides the result.
+  std::string error;                       ///< Of a failed run, one line.
+  std::vector<int> resumed_at;             ///< Frames from which it went on.
+  RunIdentity identity;                    ///< What decides the result.
   /// What the run wrote, by path relative to it; once it has ended.
   std::map<std::string, RunFile> files;
 

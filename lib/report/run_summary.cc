@@ -58,6 +58,7 @@ Json ToJson(const SurfaceSummary& surface) {
                {"refound_frames", surface.refound.size()},
                {"refound", surface.refound},
                {"reanchored", surface.reanchored},
+               {"relocalized", surface.relocalized},
                {"away_since",
                 surface.away_since >= 0 ? Json(surface.away_since) : Json()}};
   if (surface.stretched) json["stretched"] = *surface.stretched;
@@ -168,6 +169,7 @@ bool SummaryBuilder::AddSurface(int frame, const SurfaceReport& report) {
   if ((lost || occluded) && surface.away_since < 0) surface.away_since = frame;
   if (shown) surface.away_since = -1;
   if (report.event == "reanchored") surface.reanchored.push_back(frame);
+  if (report.event == "relocalized") surface.relocalized.push_back(frame);
   if (report.nodes > 0) {
     surface.nodes = report.nodes;
     surface.node_spacing = report.node_spacing;

@@ -38,6 +38,8 @@ struct SurfaceSummary {
   /// out of view.
   std::vector<int> refound;
   std::vector<int> reanchored;  ///< Frames in which its model began anew.
+  /// Frames in which the camera was found by landmarks.
+  std::vector<int> relocalized;
   /// The frame in which it was lost or occluded and after which it was not
   /// tracked again to the end of the run; -1 = it was.
   int away_since = -1;
@@ -51,7 +53,8 @@ struct SurfaceSummary {
   template <typename Archive>
   void Serialize(Archive* archive) {
     (*archive)(id, label, kind, first_frame, frames, nodes, node_spacing,
-               vertices, lost, occluded, refound, reanchored, away_since, hold);
+               vertices, lost, occluded, refound, reanchored, relocalized,
+               away_since, hold);
   }
 };
 

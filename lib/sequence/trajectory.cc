@@ -1,5 +1,6 @@
 #include "splitfusion/lib/sequence/trajectory.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -10,6 +11,28 @@
 #include "splitfusion/lib/base/text_file.h"
 
 namespace splitfusion {
+namespace {
+
+/// A way in the world, and a turn of the camera about its own axes (angle times
+/// axis).
+using CameraWay = Eigen::Matrix<double, 6, 1>;
+
+CameraWay WayFrom(const TimedPose& a, const TimedPose& b) {
+  const Rigid3d &from = a.world_from_camera, &to = b.world_from_camera;
+  const Eigen::AngleAxisd turn(
+      Eigen::Matrix3d(from.linear().transpose() * to.linear()));
+  CameraWay way;
+  way << to.translation() - from.translation(), turn.angle() * turn.axis();
+  return way;
+}
+
+Eigen::Matrix3d RotationOf(const Eigen::Vector3d& turn) {
+  const double angle = turn.norm();
+  if (angle == 0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+}
+
+}  // namespace
 
 Trajectory ReadTumTrajectory(const std::string& path) {
   Trajectory trajectory;
@@ -45,6 +68,26 @@ std::optional<Rigid3d> PoseAt(const Trajectory& trajectory, double timestamp) {
     return std::nullopt;
   }
   return nearest->world_from_camera;
+}
+
+Rigid3d PoseAmid(const UnseenMotion& motion, double timestamp) {
+  const auto& [earlier, from, to, later] = motion;
+  const double time = to.timestamp - from.timestamp;
+  if (!(time > 0)) return from.world_from_camera;
+  const CameraWay way = WayFrom(from, to);
+  // Ways over the whole time at the velocities of its ends.
+  const auto at_pace = [&](const TimedPose& a, const TimedPose& b) {
+    const double step = b.timestamp - a.timestamp;
+    return step > 0 ? CameraWay(WayFrom(a, b) * (time / step)) : way;
+  };
+  const CameraWay begin = at_pace(earlier, from), end = at_pace(to, later);
+  const double s = (timestamp - from.timestamp) / time;
+  const CameraWay here = begin * (s * (s - 1) * (s - 1)) +
+                         way * (s * s * (3 - 2 * s)) + end * (s * s * (s - 1));
+  Rigid3d pose = Rigid3d::Identity();
+  pose.linear() = from.world_from_camera.linear() * RotationOf(here.tail<3>());
+  pose.translation() = from.world_from_camera.translation() + here.head<3>();
+  return pose;
 }
 
 void WriteTumHeader(std::ostream& out) {

@@ -36,6 +36,20 @@ Trajectory ReadTumTrajectory(const std::string& path);
 /// TUM benchmark; none if there is no such pose.
 std::optional<Rigid3d> PoseAt(const Trajectory& trajectory, double timestamp);
 
+/// Four poses in order of time between the middle ones of which a camera moved
+/// unseen. Outer ones of the same time as their neighbours: none is known.
+struct UnseenMotion {
+  TimedPose earlier;  ///< Says how it moved before.
+  TimedPose from;     ///< Last known.
+  TimedPose to;       ///< Next known.
+  TimedPose later;    ///< Says how it moved after.
+};
+
+/// The pose at a time amid an unseen motion, metres: cubic Hermite curves
+/// through the known places and turns, with the velocities there; without one
+/// that of the straight way.
+Rigid3d PoseAmid(const UnseenMotion& motion, double timestamp);
+
 /// Writes the comment line that heads a TUM text file.
 void WriteTumHeader(std::ostream& out);
 

@@ -37,10 +37,10 @@ std::vector<int> BestColumns(const cv::Mat_<float>& cosines,
 
 ImageFeatures SiftFeatures(const cv::Mat_<std::uint8_t>& grey,
                            const cv::Rect& box,
-                           const cv::Mat_<std::uint8_t>& mask) {
+                           const cv::Mat_<std::uint8_t>& mask, int most) {
   ImageFeatures found;
   std::vector<cv::KeyPoint> points;
-  cv::SIFT::create(0, 3, kContrast)
+  cv::SIFT::create(most, 3, kContrast)
       ->detectAndCompute(grey(box), mask(box), points, found.descriptors);
   for (const cv::KeyPoint& point : points) {
     found.pixels.emplace_back(point.pt.x + box.x, point.pt.y + box.y);

@@ -24,10 +24,11 @@ struct ImageFeatures {
 };
 
 /// Features (SIFT; Lowe 2004; RootSIFT, Arandjelovic and Zisserman 2012) of
-/// the pixels of `mask` within `box`; all of one size.
+/// the pixels of `mask` within `box`; all of one size. `most`: only so many, of
+/// most contrast; 0: all.
 ImageFeatures SiftFeatures(const cv::Mat_<std::uint8_t>& grey,
                            const cv::Rect& box,
-                           const cv::Mat_<std::uint8_t>& mask);
+                           const cv::Mat_<std::uint8_t>& mask, int most = 0);
 
 /// Those whose pixels are in `mask`.
 ImageFeatures FeaturesWithin(const ImageFeatures& features,

@@ -1,15 +1,13 @@
 #ifndef SPLITFUSION_LIB_TRACKING_LAST_SIGHTS_H_
 #define SPLITFUSION_LIB_TRACKING_LAST_SIGHTS_H_
 
-#include <cstdint>
+#include <Eigen/Core>
 #include <map>
-#include <opencv2/core.hpp>
 #include <optional>
-#include <vector>
 
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/geometry/rigid3.h"
-#include "splitfusion/lib/tracking/point_motion.h"
+#include "splitfusion/lib/tracking/sight.h"
 
 namespace splitfusion {
 
@@ -40,24 +38,17 @@ class LastSights {
   }
 
  private:
-  /// The part of an image in which the surface was.
-  struct Sight {
-    int u = 0;                    // Of its first column.
-    int v = 0;                    // Of its first row.
-    cv::Mat_<std::uint8_t> grey;  // With what is about it.
-    cv::Mat_<float> depth;        // Of its certain pixels, metres; else 0.
-    Eigen::Matrix4d pose;         // Camera from canonical.
+  struct PosedSight {
+    Sight sight;
+    Eigen::Matrix4d pose;  // Camera from canonical.
 
     template <typename Archive>
     void Serialize(Archive* archive) {
-      (*archive)(u, v, grey, depth, pose);
+      (*archive)(sight, pose);
     }
   };
 
-  static std::vector<PointMotion> Match(const Sight& sight, int surface,
-                                        const LiveView& live, double ratio);
-
-  std::map<int, Sight> sights_;
+  std::map<int, PosedSight> sights_;
 };
 
 }  // namespace splitfusion

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <random>
 #include <vector>
 
 #include "splitfusion/lib/base/error.h"
@@ -114,6 +116,27 @@ TEST(SumWindows, CountsThePixelsAtTheCentresDepth) {
     EXPECT_NEAR(sums.yz[i], 0, 1e-6);
     EXPECT_TRUE(i == 3 ? sums.xz[i] == 0 : sums.xz[i] < 0);
   }
+}
+
+TEST(PointMap, KnowsHowFarNormalsAreOff) {
+  const PinholeCamera camera{160, 120, 260, 260, 80, 60};
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0, 1);
+  for (const float z : {1.0f, 3.0f}) {
+    cv::Mat_<float> depth(camera.height, camera.width);
+    for (float& d : depth) d = z + camera.noise.Sigma(z) * noise(random);
+    const PointMap map = ComputePointMap(depth, camera);
+    double sum = 0;
+    int count = 0;
+    for (int v = 10; v < 110; ++v) {
+      for (int u = 10; u < 150; ++u, ++count) {
+        sum += std::pow(map.normals(v, u)[0] / map.normals(v, u)[2], 2);
+      }
+    }
+    const double sigma = std::sqrt(sum / count);
+    EXPECT_NEAR(map.NormalSigma(z, camera.fx), sigma, 0.15 * sigma) << z;
+  }
+  EXPECT_EQ(PointMap().NormalSigma(2, 500), 0);  // Exact normals.
 }
 
 }  // namespace

@@ -20,6 +20,39 @@ std::string ReadMessage(const std::string& path) {
   return "nothing thrown";
 }
 
+/// On a circle, turned along it.
+TimedPose OnCircle(double time) {
+  const Eigen::AngleAxisd turn(time, Eigen::Vector3d::UnitY());
+  Rigid3d pose(turn * Eigen::Translation3d(0.5, 0, 0));
+  return {time, pose};
+}
+
+TEST(PoseAmid, GoesOnAsItCameAndWent) {
+  const UnseenMotion motion{OnCircle(0), OnCircle(0.03), OnCircle(0.6),
+                            OnCircle(0.63)};
+  for (const double time : {0.1, 0.3, 0.5}) {
+    const Rigid3d off =
+        PoseAmid(motion, time).inverse() * OnCircle(time).world_from_camera;
+    EXPECT_LT(off.translation().norm(), 0.004) << time;
+    EXPECT_LT(RotationAngle(off.linear()), 0.001) << time;
+  }
+  EXPECT_TRUE(
+      PoseAmid(motion, 0.6).isApprox(OnCircle(0.6).world_from_camera, 1e-9));
+}
+
+TEST(PoseAmid, GoesStraightWithoutVelocities) {
+  const TimedPose from = OnCircle(0), to = OnCircle(1);
+  const Rigid3d middle = PoseAmid({from, from, to, to}, 0.5);
+  const Eigen::Vector3d straight = (from.world_from_camera.translation() +
+                                    to.world_from_camera.translation()) /
+                                   2;
+  EXPECT_LT((middle.translation() - straight).norm(), 1e-9);
+  EXPECT_NEAR(RotationAngle(middle.linear()), 0.5, 1e-9);
+  // Of no time at all.
+  EXPECT_TRUE(
+      PoseAmid({from, from, from, from}, 0).isApprox(from.world_from_camera));
+}
+
 TEST(TumTrajectory, RoundTripKeepsNineDigits) {
   Trajectory trajectory;
   for (int i = 0; i < 4; ++i) {
