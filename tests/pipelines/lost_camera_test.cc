@@ -20,12 +20,11 @@ struct Cut {
   int frame = 0;  ///< Of the scene.
 };
 
-SyntheticOptions RoomOptions(std::uint32_t seed) {
+SyntheticOptions SceneOptions(SyntheticSceneKind scene) {
   SyntheticOptions options;
-  options.scene = SyntheticSceneKind::kRoom;
+  options.scene = scene;
   options.width = 320, options.height = 240;
   options.frames = 120;
-  options.seed = seed;
   return options;
 }
 
@@ -76,7 +75,8 @@ class CutRecording {
     events_.push_back(report.surfaces.at(0).event);
   }
 
-  SyntheticScene room_{RoomOptions(1)}, other_{RoomOptions(7)};
+  SyntheticScene room_{SceneOptions(SyntheticSceneKind::kRoom)};
+  SyntheticScene other_{SceneOptions(SyntheticSceneKind::kPerson)};
   SplitFusion fusion_;
   Trajectory truth_;
   std::vector<Shot> shots_;
@@ -95,7 +95,7 @@ TEST(LostCamera, IsFoundAfterJumpsAndCutsAndNothingIsFusedBetween) {
   cut.Show(Shot::kRoom, 5, 25);    // A jump to another place.
   cut.Show(Shot::kBlack, 25, 35);  // The camera goes on unseen.
   cut.Show(Shot::kRoom, 35, 45);
-  cut.Show(Shot::kOther, 0, 10);  // Another room.
+  cut.Show(Shot::kOther, 0, 10);  // Another scene.
   cut.Show(Shot::kRoom, 70, 50);  // And a place near one that is known.
   const std::vector<TrackState>& states = cut.states();
   EXPECT_EQ(Lost(states, 0, 60), 0);

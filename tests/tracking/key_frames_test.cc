@@ -48,7 +48,7 @@ TEST(KeyFrames, AreOfWhatNoOtherShows) {
   EXPECT_EQ(frames.size(), 1);
   // Half of the plate is out of view from here, so that from the first place
   // all is seen that is seen here.
-  const Rigid3d near = PoseOfPlate(0, 0.6);
+  const Rigid3d near = PoseOfPlate(0, 0.78);
   frames.Keep(ViewOfWorld(near), near);
   EXPECT_EQ(frames.size(), 1);
   // And back: more is seen than was.
