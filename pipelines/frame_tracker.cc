@@ -60,15 +60,19 @@ bool FrameTracker::Track(const std::vector<ModelSample>& samples,
                                       static_cast<std::uint16_t>(id), still,
                                       graph, report, known.view(), motions);
   stopwatch.Restart();
-  if (tracked) {
-    states->KeepUnknowns(energies().Of(surface->label()),
-                         FinalUnknowns(report->rounds.back().solver));
-  }
   if (tracked && Follows(*surface)) {
     point_tracks_.Begin(id, samples, WarpField(*graph), scene.live);
   }
   report->associate_seconds += stopwatch.Seconds();
   return tracked;
+}
+
+void FrameTracker::KeepUnknowns(const Surface& surface,
+                                const SurfaceReport& report) {
+  if (report.rounds.empty()) return;
+  term_states_.at(surface.id())
+      .KeepUnknowns(energies().Of(surface.label()),
+                    FinalUnknowns(report.rounds.back().solver));
 }
 
 std::vector<PointMotion> FrameTracker::MatchPoints(

@@ -68,6 +68,10 @@ class FrameTracker {
              bool goes_on, const FrameScene& scene, Surface* surface,
              SurfaceReport* report);
 
+  /// Where the terms' own unknowns of a surface begin from now on: where the
+  /// tracking ended that counts. Of several in a frame only that.
+  void KeepUnknowns(const Surface& surface, const SurfaceReport& report);
+
   /// A surface that was tracked is in plain view, so that it will be known
   /// again by how it looks now.
   void KeepSight(const Surface& surface, const LiveView& live);

@@ -20,6 +20,7 @@
 #include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/report/frame_pictures.h"
 #include "splitfusion/pipelines/color_pass.h"
+#include "splitfusion/pipelines/reconstruction.h"
 #include "splitfusion/pipelines/refine_pass.h"
 
 namespace splitfusion {
@@ -70,6 +71,8 @@ SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
   WriteColorRegistration();
   frames_.emplace([this] { return ReadNext(); }, options_.reads_ahead);
 }
+
+SequenceRun::~SequenceRun() = default;
 
 void SequenceRun::Execute() {
   try {

@@ -17,9 +17,11 @@
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
 #include "splitfusion/lib/report/surface_output.h"
-#include "splitfusion/pipelines/reconstruction.h"
+#include "splitfusion/pipelines/prepared_frame.h"
 
 namespace splitfusion {
+
+struct Reconstruction;
 
 /// A state of another run to begin with.
 struct OtherState {
@@ -86,6 +88,8 @@ class SequenceRun {
   SequenceRun(std::unique_ptr<Reconstruction> work, const Maker& make,
               RunFolder* folder, SequenceRunOptions options,
               SequenceRunHooks hooks = {});
+
+  ~SequenceRun();  ///< Where Reconstruction is known.
 
   /// All frames and the results. What was computed is kept, and the run marked
   /// as failed or incomplete, if it ends before.

@@ -149,21 +149,26 @@ void SplitFusion::TrackCamera(bool given, FrameReport* report) {
   }
   const Rigid3d predicted = MeanRigidMotion(surfaces_.at(0)->graph());
   std::vector<ModelSample> samples = BackgroundInView(report);
-  TrackBackground(samples, predictors_.at(0).velocity().inverse(), report);
+  TrackBackground(samples, predictors_.at(0).velocity().inverse(),
+                  /*goes_on=*/true, report);
   if (!IsCameraFound(*report)) FindCamera(predicted, &samples, report);
   if (SetMoversApart(samples, report)) {
-    TrackBackground(samples, Rigid3d::Identity(), report);
+    TrackBackground(samples, Rigid3d::Identity(), /*goes_on=*/true, report);
+  }
+  if (background_state_ == TrackState::kTracked) {
+    tracker_->KeepUnknowns(*surfaces_.at(0), report->surfaces.front());
   }
 }
 
 void SplitFusion::TrackBackground(const std::vector<ModelSample>& samples,
-                                  const Rigid3d& still, FrameReport* report) {
+                                  const Rigid3d& still, bool goes_on,
+                                  FrameReport* report) {
   Surface& background = *surfaces_.at(0);
   SurfaceReport surface;
   surface.id = 0;
   const Rigid3d before = MeanRigidMotion(background.graph());
   background_state_ =
-      TrackSurface(samples, still, /*goes_on=*/true, &background, &surface)
+      TrackSurface(samples, still, goes_on, &background, &surface)
           ? TrackState::kTracked
           : TrackState::kLost;
   MoveObjects(MeanRigidMotion(background.graph()) * before.inverse());
@@ -227,6 +232,7 @@ void SplitFusion::TrackObjects(FrameReport* report) {
     } else if (found[i] ||
                TrackWhereSeen(surfaces_.at(object.id).get(), &object)) {
       track->Apply(TrackEvent::kFits);
+      tracker_->KeepUnknowns(*surfaces_.at(object.id), object);
     } else {
       // Too little of it may be in view to know where it is.
       track->Apply(InPlainView(object) ? TrackEvent::kMisfits

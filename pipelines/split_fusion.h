@@ -122,7 +122,7 @@ class SplitFusion {
   /// Moves the background, which comes in at the predicted motion, as
   /// TrackSurface() does, and all other surfaces with it.
   void TrackBackground(const std::vector<ModelSample>& samples,
-                       const Rigid3d& still, FrameReport* report);
+                       const Rigid3d& still, bool goes_on, FrameReport* report);
   /// A camera motion moves every surface.
   void MoveObjects(const Rigid3d& camera_motion);
   /// Where the background was tracked to, and how well it fits there.

@@ -35,7 +35,7 @@ void SplitFusion::FindCamera(const Rigid3d& predicted,
     MoveCamera(place);
     FrameReport attempt;
     const std::vector<ModelSample> in_view = BackgroundInView(&attempt);
-    TrackBackground(in_view, Rigid3d::Identity(), &attempt);
+    TrackBackground(in_view, Rigid3d::Identity(), /*goes_on=*/false, &attempt);
     CameraFit fit = FitOfCamera(attempt);
     known |= fit.state == TrackState::kTracked;
     if (fit.misfit >= best.misfit) continue;

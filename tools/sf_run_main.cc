@@ -32,6 +32,7 @@
 #include "splitfusion/lib/report/run_folder.h"
 #include "splitfusion/lib/report/run_marker.h"
 #include "splitfusion/lib/sequence/image_folder_reader.h"
+#include "splitfusion/pipelines/reconstruction.h"
 #include "splitfusion/pipelines/sequence_run.h"
 #include "tool_main.h"
 

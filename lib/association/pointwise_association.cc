@@ -33,13 +33,15 @@ struct PointwiseAssociator::Gates {
   explicit Gates(const AssociationGates& gates)
       : distance(static_cast<float>(gates.distance)),
         normal_angle(static_cast<float>(gates.normal_angle)),
+        min_normal_cosine(std::cos(normal_angle)),
         min_view_cosine(static_cast<float>(std::cos(gates.grazing_angle))),
         color_level(gates.coarse_color ? 1 : 0) {}
 
-  float distance;         // Metres.
-  float normal_angle;     // Radians.
-  float min_view_cosine;  // Between live normal and view ray.
-  int color_level;        // Of LiveView::grey.
+  float distance;           // Metres.
+  float normal_angle;       // Radians between exact normals,
+  float min_normal_cosine;  // and its cosine.
+  float min_view_cosine;    // Between live normal and view ray.
+  int color_level;          // Of LiveView::grey.
 };
 
 PointwiseAssociator::PointwiseAssociator(const LiveView& live,
@@ -77,6 +79,17 @@ bool PointwiseAssociator::IsAstray(Outcome outcome) const {
   return kind == Rejection::kAbsent || kind == Rejection::kMisfit;
 }
 
+bool PointwiseAssociator::HaveOneNormal(const Correspondence& pair,
+                                        const Gates& gates) const {
+  const float cosine = pair.warped_normal.dot(pair.target_normal);
+  if (cosine >= gates.min_normal_cosine) return true;
+  const float angle =
+      gates.normal_angle +
+      static_cast<float>(kNoiseSigmas) *
+          live_.map.NormalSigma(pair.target.z(), live_.camera.fx);
+  return cosine >= std::cos(std::min(angle, kPi<float>));
+}
+
 PointwiseAssociator::Outcome PointwiseAssociator::Match(
     const ModelSample& sample, const WarpField& warp, const Gates& gates,
     Correspondence* out) const {
@@ -91,14 +104,7 @@ PointwiseAssociator::Outcome PointwiseAssociator::Match(
   if ((point - out->target).squaredNorm() > gate * gate) return kDistance;
   out->target_normal = ToEigen(live_.map.normals(v, u));
   out->warped_normal = warp.WarpNormal(sample.skinning, sample.normal);
-  const float angle =
-      gates.normal_angle +
-      static_cast<float>(kNoiseSigmas) *
-          live_.map.NormalSigma(out->target.z(), live_.camera.fx);
-  if (out->warped_normal.dot(out->target_normal) <
-      std::cos(std::min(angle, kPi<float>))) {
-    return kNormalAngle;
-  }
+  if (!HaveOneNormal(*out, gates)) return kNormalAngle;
   if (-out->target_normal.dot(out->target) <
       gates.min_view_cosine * out->target.norm()) {
     return kGrazing;

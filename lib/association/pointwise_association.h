@@ -56,6 +56,9 @@ class PointwiseAssociator : public Associator {
 
   Outcome Match(const ModelSample& sample, const WarpField& warp,
                 const Gates& gates, Correspondence* out) const;
+  /// Whether the angle between the normals is no larger than the gate, and than
+  /// noise has it beside.
+  bool HaveOneNormal(const Correspondence& pair, const Gates& gates) const;
   static RejectedPoints Row(Outcome outcome);
   /// Whether the sample would be in view and is not where the model has it.
   bool IsAstray(Outcome outcome) const;

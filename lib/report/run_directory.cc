@@ -171,6 +171,14 @@ void RunDirectory::AddFrame(const FrameReport& report, const TimedPose& pose) {
   seconds_writing_ += stopwatch.Seconds();
 }
 
+void RunDirectory::WriteTrajectory(const Trajectory& trajectory) const {
+  const auto added =
+      std::min(static_cast<std::size_t>(Summary().frames), trajectory.size());
+  WriteTumTrajectory(paths_.Trajectory(),
+                     {trajectory.end() - static_cast<std::ptrdiff_t>(added),
+                      trajectory.end()});
+}
+
 double RunDirectory::CpuSeconds() const {
   return cpu_seconds_before_ +
          static_cast<double>(std::clock()) / CLOCKS_PER_SEC;

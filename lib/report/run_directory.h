@@ -65,12 +65,11 @@ class RunDirectory {
   /// @throw InputError if a file cannot be written.
   void AddFrame(const FrameReport& report, const TimedPose& pose);
 
-  /// Writes trajectory.txt anew, once all frames are known.
+  /// Writes trajectory.txt anew, once all frames are known: of the poses the
+  /// last ones, those of the frames that were added.
   ///
   /// @throw InputError if it cannot be written.
-  void WriteTrajectory(const Trajectory& trajectory) const {
-    WriteTumTrajectory(paths_.Trajectory(), trajectory);
-  }
+  void WriteTrajectory(const Trajectory& trajectory) const;
 
   /// Counts time spent on writing outside of this class (meshes, pictures) to
   /// `seconds_writing`.

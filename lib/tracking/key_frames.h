@@ -32,6 +32,7 @@ struct KeyFrameOptions {
 /// (small images, as in Klein and Murray 2008) are compared by features.
 class KeyFrames {
  public:
+  /// `options`: as checked.
   explicit KeyFrames(KeyFrameOptions options) : options_(options) {}
 
   /// The live frame shows the background from where it was tracked. Kept if it

@@ -10,6 +10,7 @@
 
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "splitfusion/lib/synthetic/synthetic_writer.h"
+#include "splitfusion/pipelines/reconstruction.h"
 #include "support/expect_input_error.h"
 #include "support/synthetic_run.h"
 #include "support/temporary_folder.h"
