@@ -151,7 +151,9 @@ void SplitFusion::TrackCamera(bool given, FrameReport* report) {
   std::vector<ModelSample> samples = BackgroundInView(report);
   TrackBackground(samples, predictors_.at(0).velocity().inverse(),
                   /*goes_on=*/true, report);
-  if (!IsCameraFound(*report)) FindCamera(predicted, &samples, report);
+  if (!IsCameraFound(*report) && surfaces_.at(0)->graph().rigid()) {
+    FindCamera(predicted, &samples, report);
+  }
   if (SetMoversApart(samples, report)) {
     TrackBackground(samples, Rigid3d::Identity(), /*goes_on=*/true, report);
   }

@@ -152,7 +152,9 @@ void SplitFusion::KeepSights(const FrameReport& report) {
   if (background_state_ == TrackState::kTracked && !report.surfaces.empty()) {
     const SurfaceReport& background = report.surfaces.front();
     if (!background.rounds.empty()) camera_misfit_.Add(background.misfit);
-    tracker_->KeepCamera(*surfaces_.at(0), live_);
+    if (surfaces_.at(0)->graph().rigid()) {
+      tracker_->KeepCamera(*surfaces_.at(0), live_);
+    }
   }
   if (!options_.last_sights) return;
   for (const SurfaceReport& object : report.surfaces) {

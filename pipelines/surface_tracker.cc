@@ -203,9 +203,8 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
   const AssociationCounts& counts = association.counts;
   int compared = counts.accepted + counts.Count(Rejection::kMisfit);
   // The room is still there behind what moves before it.
-  if (target.surface != 0) {
-    compared = counts.model_points;
-  }
+  if (target.surface != 0) compared = counts.model_points;
+  if (compared == 0) return 2;  // Nothing of it fits anywhere.
   // Truncated; a sample that fits nowhere counts 1 for each.
   double sum = 2.0 * counts.Count(Rejection::kMisfit);
   if (target.surface != 0) {
@@ -221,7 +220,7 @@ double SurfaceTracker::Misfit(const std::vector<ModelSample>& samples,
     sum += std::min(1.0, distance * distance) +
            std::min(1.0, difference * difference);
   }
-  return sum / std::max(1, compared);
+  return sum / compared;
 }
 
 bool SurfaceTracker::TrackFrom(const DeformationGraph& start,
