@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
@@ -53,12 +54,9 @@ cv::Mat_<uchar> MaskOf(const std::vector<Eigen::Vector3f>& points, int stride,
 }
 
 /// Whether a detection has more than half of a mask's pixels.
-bool IsDetected(const std::vector<StandingObject>& detected,
-                const cv::Mat_<uchar>& mask) {
-  const int pixels = cv::countNonZero(mask);
-  return std::any_of(detected.begin(), detected.end(), [&](const auto& other) {
-    return 2 * cv::countNonZero(mask & other.mask) > pixels;
-  });
+bool IsDetectionOf(const StandingObject& detected,
+                   const cv::Mat_<uchar>& mask) {
+  return 2 * cv::countNonZero(mask & detected.mask) > cv::countNonZero(mask);
 }
 
 /// The tracker of such tries.
@@ -99,7 +97,9 @@ std::vector<StandingObjects::Moving> StandingObjects::Watch(
   for (std::size_t i = 0; i < mapped_.size(); ++i) {
     Mapped& mapped = mapped_[i];
     const OwnMotion& motion = motions[i];
-    if (motion.gain < min_gain_ || motion.way > options_.assignment.way) {
+    const double gain = (mapped.gain + motion.gain) / 2;
+    mapped.gain = motion.gain;
+    if (gain < min_gain_ || motion.way > options_.assignment.way) {
       standing.push_back(std::move(mapped));
       continue;
     }
@@ -121,21 +121,27 @@ void StandingObjects::Detect(std::vector<StandingObject> detected,
                              const std::vector<ModelSample>& samples,
                              const LiveView& live,
                              const Rigid3f& camera_from_canonical) {
-  std::vector<StandingObject> objects;
   std::vector<Mapped> mapped;
   for (StandingObject& object : detected) {
     std::vector<Eigen::Vector3f> points =
         MappedPoints(object.mask, samples, live, camera_from_canonical);
     if (points.empty()) continue;
-    objects.push_back(object);
-    mapped.push_back({std::move(object), 0, std::move(points)});
+    mapped.push_back({std::move(object), 0, 0, std::move(points)});
   }
+  const auto detections_end = static_cast<std::ptrdiff_t>(mapped.size());
   const cv::Mat_<float> map =
       DepthOf(samples, stride_, camera_from_canonical, live.camera);
   for (Mapped& known : mapped_) {
     known.object.mask =
         MaskOf(known.points, stride_, camera_from_canonical, live);
-    if (IsDetected(objects, known.object.mask)) continue;
+    bool is_detected = false;
+    for (auto at = mapped.begin(); at != mapped.begin() + detections_end;
+         ++at) {
+      if (!IsDetectionOf(at->object, known.object.mask)) continue;
+      is_detected = true;
+      at->gain = std::max(at->gain, known.gain);
+    }
+    if (is_detected) continue;
     int in_view = 0, gone = 0;
     for (const Eigen::Vector3f& known_point : known.points) {
       if (!IsInView(known_point, camera_from_canonical, live)) continue;

@@ -31,13 +31,14 @@ class StandingObjects {
 
   /// Takes in those detected in a frame, with the labels of its surfaces, that
   /// are where they were mapped, and takes those out that FindOwnMotion() finds
-  /// a gain of at least `own_motion_gain` for, as the camera sees it that is
-  /// tracked without any of them; it has just begun, so that its way is at most
-  /// the assignment's of one frame. One of frames before of which none of the
-  /// detected has more than half of the pixels stays where it was mapped
-  /// without a detection, while it is in the map and for at most
-  /// `max_missed_frames` in which it is in view: detectors miss things just as
-  /// they begin to move.
+  /// a gain of at least `own_motion_gain` for, on average of this frame and the
+  /// one before (what noise makes of a thing that stands it makes once), as the
+  /// camera sees it that is tracked without any of them; it has just begun, so
+  /// that its way is at most the assignment's of one frame. One of frames
+  /// before of which none of the detected has more than half of the pixels
+  /// stays where it was mapped without a detection, while it is in the map and
+  /// for at most `max_missed_frames` in which it is in view: detectors miss
+  /// things just as they begin to move.
   ///
   /// `samples`: the background's model points in view; `background`: as tracked
   /// in this frame; `context`: of it, as of SurfaceTracker::Track().
@@ -56,14 +57,15 @@ class StandingObjects {
  private:
   struct Mapped {
     StandingObject object;
-    int missed = 0;  // Frames in view since its last detection.
+    int missed = 0;   // Frames in view since its last detection.
+    double gain = 0;  // OwnMotion::gain in the frame before.
     // What was mapped within its mask then: canonical frame of the background,
     // metres.
     std::vector<Eigen::Vector3f> points;
 
     template <typename Archive>
     void Serialize(Archive* archive) {
-      (*archive)(object, missed, points);
+      (*archive)(object, missed, gain, points);
     }
   };
 

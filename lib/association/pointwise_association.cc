@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "splitfusion/lib/association/lost_parts.h"
@@ -137,7 +138,9 @@ Association PointwiseAssociator::Associate(
   }
   const Gates gates(association_gates);
   std::vector<Outcome> outcomes(used.size());
-  std::vector<Correspondence> matches(used.size());
+  // Not set before it is found: setting it takes as long as finding it.
+  const std::unique_ptr<Correspondence[]> matches(
+      new Correspondence[used.size()]);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, used.size(), 1024),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i < range.end();
@@ -146,18 +149,17 @@ Association PointwiseAssociator::Associate(
                       }
                     });
   std::array<int, kGrazing + 1> counts{};
-  std::size_t accepted = 0;
+  Association association;
+  association.correspondences.reserve(
+      std::count(outcomes.begin(), outcomes.end(), kAccepted));
   std::vector<const ModelSample*> astray;
   for (std::size_t i = 0; i < used.size(); ++i) {
     ++counts[outcomes[i]];
     if (IsAstray(outcomes[i])) astray.push_back(used[i]);
-    if (outcomes[i] != kAccepted) continue;
-    if (accepted < i) matches[accepted] = matches[i];
-    ++accepted;
+    if (outcomes[i] == kAccepted) {
+      association.correspondences.push_back(matches[i]);
+    }
   }
-  matches.resize(accepted);
-  Association association;
-  association.correspondences = std::move(matches);
   if (association_gates.lost_distance > 0) {
     association.lost = PairLostParts(
         FindOpenPoints(live_, surface_, association.correspondences, stride,

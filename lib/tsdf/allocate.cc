@@ -1,6 +1,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "splitfusion/lib/base/floor_to_int.h"
@@ -41,7 +43,7 @@ struct BlockRay {
 };
 
 /// Blocks that the band around the pixels of one row passes through and that
-/// are not in the volume yet.
+/// are not in the volume yet, as often as a pixel does.
 std::vector<openvdb::Coord> MissingInRow(const DepthObservation& observation,
                                          const Rigid3d& canonical_from_camera,
                                          const TsdfVolume& volume, int v) {
@@ -59,17 +61,33 @@ std::vector<openvdb::Coord> MissingInRow(const DepthObservation& observation,
     }
     ray.step = canonical_from_camera.linear() *
                observation.camera.BackProject<double>(u, v, 1) / block;
+    const double z_begin = depth[u] - truncation;
     const double z_end = depth[u] + truncation;
-    for (double z = depth[u] - truncation;; z += 0.5 * block) {
+    openvdb::Coord last;
+    for (double z = z_begin;; z += 0.5 * block) {
       const auto [x, y, z_place] = ray.At(std::min(z, z_end));
-      if (table.Find(x, y, z_place) == 0) {
-        missing.emplace_back(kLeafSize * x, kLeafSize * y, kLeafSize * z_place);
-      }
+      const openvdb::Coord origin(kLeafSize * x, kLeafSize * y,
+                                  kLeafSize * z_place);
+      const bool again = z > z_begin && origin == last;
+      last = origin;
+      if (!again && table.Find(x, y, z_place) == 0) missing.push_back(origin);
       if (z >= z_end) break;
     }
   }
-  SortUnique(&missing);
   return missing;
+}
+
+/// Those that appear at least `least` times, each once.
+std::vector<openvdb::Coord> Repeated(std::vector<openvdb::Coord> origins,
+                                     std::ptrdiff_t least) {
+  std::sort(origins.begin(), origins.end());
+  std::vector<openvdb::Coord> repeated;
+  for (auto same = origins.begin(); same != origins.end();) {
+    const auto next = std::upper_bound(same, origins.end(), *same);
+    if (next - same >= least) repeated.push_back(*same);
+    same = next;
+  }
+  return repeated;
 }
 
 }  // namespace
@@ -88,8 +106,10 @@ void AllocateBand(const DepthObservation& observation,
   for (const auto& origins : found) {
     all.insert(all.end(), origins.begin(), origins.end());
   }
-  SortUnique(&all);
-  for (const openvdb::Coord& origin : all) volume->grids().Touch(origin);
+  const int least = volume->options().min_block_pixels;
+  for (const openvdb::Coord& origin : Repeated(std::move(all), least)) {
+    volume->grids().Touch(origin);
+  }
 }
 
 void AllocateAround(const std::vector<Eigen::Vector3d>& points, double radius,

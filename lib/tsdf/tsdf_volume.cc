@@ -138,6 +138,10 @@ void TsdfOptions::List(OptionList* list) {
   list->Number("reach_sigmas", &reach_sigmas, {0, 10}, "",
                "Voxels are written so many standard deviations of the depth "
                "noise behind a measurement, but at least the truncation.");
+  list->Number("min_block_pixels", &min_block_pixels, Range::AtLeast(1),
+               "pixels",
+               "Blocks of voxels for which fewer pixels of a frame ask are "
+               "noise and are not made (surfaces that are carried rigidly).");
 }
 
 void TsdfOptions::Check() const { CheckOptions(*this); }

@@ -26,6 +26,9 @@ struct TsdfOptions {
   /// noise that is cut off there moves a surface away. Of thin things, which
   /// are seen from behind, too, it would reach the other side.
   double reach_sigmas = 0;
+  /// Blocks for which fewer pixels of a frame ask (every other one of every
+  /// other row) are not made: noise, which would ask for ever more of them.
+  int min_block_pixels = 2;
   /// False: distances alone. Takes two thirds of the memory; meshes are black.
   bool has_color = true;
 
@@ -107,8 +110,9 @@ class TsdfVolume {
   std::unique_ptr<Grids> grids_;
 };
 
-/// Allocates the blocks within the truncation band of the writing pixels, for
-/// a surface whose canonical frame is carried rigidly.
+/// Allocates the blocks within the truncation band of the writing pixels, see
+/// TsdfOptions::min_block_pixels, for a surface whose canonical frame is carried
+/// rigidly.
 ///
 /// @throw InputError if an image is missing or of a wrong size.
 void AllocateBand(const DepthObservation& observation,

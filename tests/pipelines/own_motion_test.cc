@@ -103,6 +103,16 @@ TEST_F(StandingObjectsTest, MoveOnceAndAreNotStandingAnyMore) {
   EXPECT_EQ(CountMoving(false, moved_), 0u);
 }
 
+TEST_F(StandingObjectsTest, MoveSlowlyInTwoFramesOrNotAtAll) {
+  // As little as noise alone explains once in thousands of frames.
+  const Eigen::Vector3d slightly = kPlace - Eigen::Vector3d(0, 0, 0.0035);
+  EXPECT_EQ(CountMoving(true, kPlace), 0u);
+  EXPECT_EQ(CountMoving(true, slightly), 0u);
+  EXPECT_EQ(CountMoving(true, kPlace), 0u);
+  EXPECT_EQ(CountMoving(true, slightly), 0u);
+  EXPECT_EQ(CountMoving(true, slightly), 1u);
+}
+
 TEST_F(StandingObjectsTest, BeginToMoveByNoMoreThanTheWayOfAFrame) {
   const Eigen::Vector3d jump = kPlace - Eigen::Vector3d(0, 0, 0.08);
   EXPECT_EQ(CountMoving(true, kPlace), 0u);
