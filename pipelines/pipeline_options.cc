@@ -46,6 +46,9 @@ void PipelineOptions::List(OptionList* list) {
   list->Part("", &point_tracks);
   list->Part("", &match);
   list->Part("key_frame_", &key_frames);
+  list->Number("unusual_misfit", &unusual_misfit, Range::AtLeast(1), "",
+               "The camera is looked for where the background fits so many "
+               "times as badly as usual.");
   list->Demand(match.feature_model.empty() ||
                    (match.features && tracker.part_start.parts.count > 0),
                "feature_model",

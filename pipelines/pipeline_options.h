@@ -36,6 +36,10 @@ struct PipelineOptions {
   MatchOptions match;
   /// Frames by which a lost camera is found.
   KeyFrameOptions key_frames;
+  /// What fits so many times as badly as usual is another scene, or another
+  /// place: blur of a fast turn triples the misfit, another scene has twenty
+  /// times of it.
+  double unusual_misfit = 3;
   /// Minimiser.
   SolverOptions solver;
   /// Motions of what was hidden, once all frames are known.

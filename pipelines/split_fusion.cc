@@ -26,7 +26,8 @@ SplitFusion::SplitFusion(const PinholeCamera& camera,
       segmenter_(std::move(segmenter)),
       splitter_(camera, labels, options.split),
       tracker_(std::make_unique<FrameTracker>(options, registries)),
-      standing_(options) {
+      standing_(options),
+      camera_misfit_(options.unusual_misfit) {
   options_.Check();
   camera_.Check();
 }

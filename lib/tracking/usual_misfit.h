@@ -12,6 +12,9 @@ namespace splitfusion {
 /// what fits worse by far is another scene, or another place.
 class UsualMisfit {
  public:
+  /// `worse`: what fits as usual has less than so many times the usual misfit.
+  explicit UsualMisfit(double worse) : worse_(worse) {}
+
   /// Of a tracked frame.
   void Add(double misfit) {
     if (!usual_) usual_ = misfit;
@@ -20,7 +23,7 @@ class UsualMisfit {
 
   /// Up to which a frame fits as usual; without bound before the first one.
   double Highest() const {
-    return usual_ ? kWorse * *usual_ + kLeast
+    return usual_ ? worse_ * *usual_ + kLeast
                   : std::numeric_limits<double>::infinity();
   }
 
@@ -31,11 +34,10 @@ class UsualMisfit {
   }
 
  private:
-  /// Blur of a fast turn triples it, another scene is twenty times as bad.
-  static constexpr double kWorse = 3;
   /// So much happens where all fits, metres and greys aside.
   static constexpr double kLeast = 0.1;
 
+  double worse_;
   std::optional<double> usual_;
 };
 

@@ -8,11 +8,11 @@ namespace splitfusion {
 namespace {
 
 TEST(UsualMisfit, LetsEverythingPassBeforeTheFirstFrame) {
-  EXPECT_TRUE(std::isinf(UsualMisfit().Highest()));
+  EXPECT_TRUE(std::isinf(UsualMisfit(3).Highest()));
 }
 
 TEST(UsualMisfit, FollowsWhatIsUsual) {
-  UsualMisfit misfit;
+  UsualMisfit misfit(3);
   misfit.Add(0.04);
   EXPECT_GT(misfit.Highest(), 0.1);
   EXPECT_LT(misfit.Highest(), 0.3);  // Another scene has 1.
