@@ -131,7 +131,8 @@ std::vector<NamedSettings> RowsFromJson(const Json& json) {
 Experiment WithoutSequences(const Json& json) {
   CheckFields(json, "experiment",
               {"about", "sequences", "set", "grid", "random", "rows", "repeat",
-               "baseline", "ground_truth", "evaluate"});
+               "baseline", "ground_truth", "evaluate", "format_version"});
+  CheckFormatVersion("experiment", json);
   Experiment experiment;
   experiment.set = SettingsAt(json, "set");
   if (json.contains("grid")) experiment.grid = GridFromJson(json["grid"]);

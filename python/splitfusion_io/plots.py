@@ -79,8 +79,9 @@ def errors(
     axes = _axes(axes, f"errors of {run.folder.name}", "frame", "error [mm]")
     for surface_id in run.surfaces:
         frames, values = run.series(surface_id, "residual_rms")
+        values[values == 0] = np.nan  # Nothing was solved.
         label = f"residual of {_name(run, surface_id)}"
-        axes.plot(frames, 1000 * values, label=label)
+        axes.plot(frames, 1000 * values, ".-", label=label)
     if truth is not None:
         found = trajectory_errors(run.trajectory, truth)
         frames = run.frame_indices[found.indices]
@@ -129,21 +130,25 @@ def counts(run: Run, surface_id: int, axes: Optional[Axes] = None) -> Axes:
 def convergence(
     run: Run, surface_id: int, frame: int, axes: Optional[Axes] = None
 ) -> Axes:
-    """Cost over the iterations of every round in which a surface was tracked in
-    a frame; steps that were not taken are crosses."""
+    """Cost over the iterations of a surface in a frame, a line for every round
+    (each has its own correspondences), coloured by stage; steps that were not
+    taken are crosses."""
     title = f"convergence, surface {_name(run, surface_id)}, frame {frame}"
     axes = _axes(axes, title, "iteration", "cost")
     rows = run.iterations.where(surface=surface_id, frame=frame)
     if len(rows) == 0:
         refuse(f"{run.iterations.path}: frame", frame, "one with iterations")
     begin = 0
+    colors: dict[str, str] = {}
     for number in np.unique(rows["round"]):
         part = rows.where(round=number)
         steps = begin + np.arange(len(part))
-        label = f"{number:.0f} {part['stage'][0]}, stride {part['stride'][0]:.0f}"
-        (line,) = axes.plot(steps, part["cost"], ".-", label=label)
+        stage = f"{part['stage'][0]}, stride {part['stride'][0]:.0f}"
+        label = None if stage in colors else stage
+        color = colors.setdefault(stage, f"C{len(colors)}")
+        axes.plot(steps, part["cost"], ".-", label=label, color=color)
         failed = part["accepted"] == 0
-        axes.plot(steps[failed], part["cost"][failed], "x", color=line.get_color())
+        axes.plot(steps[failed], part["cost"][failed], "x", color=color)
         begin += len(part)
     axes.set_yscale("log")
     _legend(axes)
