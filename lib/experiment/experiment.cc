@@ -9,6 +9,7 @@
 #include <set>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/format_version.h"
 #include "splitfusion/lib/experiment/sequence_list.h"
 
 namespace splitfusion {

@@ -38,7 +38,8 @@ def overview(run: Run) -> str:
         f"(median), camera path {length:.2f} m"
     )
     lines.append(
-        "   id label           kind       frames  nodes  vertices  lost  occluded"
+        "   id label           kind       frames  nodes  vertices  "
+        "lost  occluded"
     )
     lines += [_surface_line(item) for item in summary.get("surfaces", [])]
     headline = (run.evaluation or {}).get("headline", {})
@@ -46,7 +47,9 @@ def overview(run: Run) -> str:
     if known:
         lines.append("  evaluation: " + ", ".join(known))
     kinds = Counter(file.kind for file in run.files() if file.kind)
-    lines.append("  files: " + ", ".join(f"{n} {k}" for k, n in sorted(kinds.items())))
+    lines.append(
+        "  files: " + ", ".join(f"{n} {k}" for k, n in sorted(kinds.items()))
+    )
     return "\n".join(lines)
 
 
@@ -54,8 +57,12 @@ def main(arguments: Optional[list[str]] = None) -> int:
     """Prints the overview; 2 on bad input, with one line on stderr."""
     parser = argparse.ArgumentParser(prog="splitfusion_io", description=__doc__)
     parser.add_argument("run", help="folder that sf_run wrote")
-    parser.add_argument("--plots", metavar="DIR", help="write all plots into DIR")
-    parser.add_argument("--truth", metavar="FILE", help="true trajectory, TUM text")
+    parser.add_argument(
+        "--plots", metavar="DIR", help="write all plots into DIR"
+    )
+    parser.add_argument(
+        "--truth", metavar="FILE", help="true trajectory, TUM text"
+    )
     options = parser.parse_args(arguments)
     try:
         run = Run(options.run)

@@ -57,8 +57,10 @@ class Batch:
         """`task.json`: settings, exit code, times."""
         return read_json(self.folder / "tasks" / task / "task.json")
 
-    def means(self, key: str, figure: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Values of a setting, mean of a figure over all complete runs with each,
+    def means(
+        self, key: str, figure: str
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Values of a setting, mean of a figure over all complete runs with it,
         and its standard deviation (NaN of a single one)."""
         complete = self.results.rows(self.results["status"] == "complete")
         values = np.unique(complete[key])

@@ -103,7 +103,9 @@ class Table:
     def __getitem__(self, name: str) -> np.ndarray:
         """A column. RunError if there is none of that name."""
         if name not in self.columns:
-            refuse(f"{self.path}: column", name, "one of " + ", ".join(self.names))
+            refuse(
+                f"{self.path}: column", name, "one of " + ", ".join(self.names)
+            )
         return self.columns[name]
 
     def where(self, **values: object) -> "Table":

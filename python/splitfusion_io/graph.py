@@ -55,7 +55,9 @@ class Graph:
         return used
 
 
-def _array(place: str, value: Any, shape: tuple[int, ...], kind: type) -> np.ndarray:
+def _array(
+    place: str, value: Any, shape: tuple[int, ...], kind: type
+) -> np.ndarray:
     """An array of that shape (-1: any); RunError if it is none."""
     try:
         array = np.asarray(value if len(value) else np.zeros((0,) + shape[1:]))
@@ -107,7 +109,9 @@ def read_graph(path: PathLike) -> Graph:
         refuse(f"{path}: field 'neighbors_per_point'", few, "1 or more")
     if data.get("models"):
         refuse(f"{path}: field 'models'", "there", "a run with 'parts'")
-    positions = _array(f"{path}: field 'positions'", data["positions"], (-1, 3), float)
+    positions = _array(
+        f"{path}: field 'positions'", data["positions"], (-1, 3), float
+    )
     nodes = len(positions)
     if nodes == 0:
         refuse(f"{path}: field 'positions'", "no node", "one or more")
@@ -151,7 +155,9 @@ def _motions_version(path: PathLike, data: bytes) -> int:
     head = data[:8]
     digits = head[6:].decode("ascii", "replace")
     if len(data) < 16 or head[:6] != b"SFMOTN" or not digits.isdigit():
-        refuse(path, head, f"a file that begins with SFMOTN{MOTIONS_VERSION:02}")
+        refuse(
+            path, head, f"a file that begins with SFMOTN{MOTIONS_VERSION:02}"
+        )
     version = int(digits)
     if not 1 <= version <= MOTIONS_VERSION:
         refuse(
@@ -169,8 +175,12 @@ def _check_sum(path: PathLike, data: bytes) -> None:
         import xxhash
     except ImportError:
         return
-    if xxhash.xxh3_64_intdigest(data[:-8]) != int.from_bytes(data[-8:], "little"):
-        raise RunError(f"{path}: is damaged: expected the checksum of its content")
+    if xxhash.xxh3_64_intdigest(data[:-8]) != int.from_bytes(
+        data[-8:], "little"
+    ):
+        raise RunError(
+            f"{path}: is damaged: expected the checksum of its content"
+        )
 
 
 def _check_motions(path: PathLike, motions: Motions) -> None:
@@ -182,8 +192,8 @@ def _check_motions(path: PathLike, motions: Motions) -> None:
     good = (away < 1e-2).all() and np.isfinite(motions.translations).all()
     if not good or not (np.linalg.det(r) > 0).all():
         raise RunError(
-            f"{path}: is damaged: expected a rotation and a translation of every "
-            "node"
+            f"{path}: is damaged: expected a rotation and a translation of "
+            "every node"
         )
 
 

@@ -7,8 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from .errors import PathLike, RunError, brief
+from .errors import PathLike, RunError, brief, refuse
 from .files import check_version
+
+#: Newest version of the files of `problems/`, their attribute `version`.
+PROBLEM_VERSION = 2
 
 
 @dataclass
@@ -22,8 +25,12 @@ class Hdf5File:
 
 def _plain(value: Any) -> Any:
     """An attribute as a number or text of Python."""
-    value = value.item() if isinstance(value, (np.ndarray, np.generic)) else value
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+    value = (
+        value.item() if isinstance(value, (np.ndarray, np.generic)) else value
+    )
+    return (
+        value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+    )
 
 
 def read_hdf5(path: PathLike) -> Hdf5File:
@@ -32,8 +39,8 @@ def read_hdf5(path: PathLike) -> Hdf5File:
         import h5py
     except ImportError:
         raise RunError(
-            f"{path}: h5py is not installed: expected Debian's python3-h5py, or "
-            "pip install h5py"
+            f"{path}: h5py is not installed: expected Debian's python3-h5py, "
+            "or pip install h5py"
         ) from None
     result = Hdf5File()
 
@@ -45,7 +52,16 @@ def read_hdf5(path: PathLike) -> Hdf5File:
         with h5py.File(str(path), "r") as file:
             result.attributes = {k: _plain(v) for k, v in file.attrs.items()}
             check_version(path, result.attributes)
+            version = result.attributes.get("version", 0)
+            if version > PROBLEM_VERSION:
+                refuse(
+                    f"{path}: attribute 'version'",
+                    version,
+                    f"at most {PROBLEM_VERSION}: written by a newer version",
+                )
             file.visititems(visit)
     except OSError as error:
-        raise RunError(f"{path}: {brief(error)}: expected an HDF5 file") from None
+        raise RunError(
+            f"{path}: {brief(error)}: expected an HDF5 file"
+        ) from None
     return result

@@ -53,12 +53,14 @@ def _legend(axes: Axes) -> None:
 def trajectory(
     run: Run, truth: Optional[Trajectory] = None, axes: Optional[Axes] = None
 ) -> Axes:
-    """Places of the camera from above: x to the right, z forward, metres, in the
-    world of the run, into which a true trajectory is aligned."""
+    """Places of the camera from above: x to the right, z forward, metres, in
+    the world of the run, into which a true trajectory is aligned."""
     axes = _axes(axes, f"camera of {run.folder.name}", "x [m]", "z [m]")
     places = run.trajectory.positions
     axes.plot(places[:, 0], places[:, 2], label="estimate")
-    axes.plot(places[:1, 0], places[:1, 2], "o", color="C0", label="first frame")
+    axes.plot(
+        places[:1, 0], places[:1, 2], "o", color="C0", label="first frame"
+    )
     if truth is not None:
         motion = np.linalg.inv(
             trajectory_errors(run.trajectory, truth).truth_from_estimate
@@ -165,7 +167,9 @@ def solvers(
     axes = _axes(axes, title, "time / that of the fastest", "share of problems")
     seconds = table[f"seconds_to_{gap}"]
     keys = ("problem", "threads", "start", "repeat")
-    cases = np.array([" ".join(map(str, k)) for k in zip(*(table[n] for n in keys))])
+    cases = np.array(
+        [" ".join(map(str, k)) for k in zip(*(table[n] for n in keys))]
+    )
     ways = np.array(
         [f"{s}, {p}" for s, p in zip(table["solver"], table["preconditioner"])]
     )
@@ -197,13 +201,19 @@ def batch(
     axes = _axes(axes, title, key, figure)
     values, mean, spread = experiment.means(key, figure)
     if values.dtype.kind != "f":
-        axes.set_xticks(range(len(values)), [str(v) or "(default)" for v in values])
+        axes.set_xticks(
+            range(len(values)), [str(v) or "(default)" for v in values]
+        )
         values = np.arange(len(values))
-    axes.errorbar(values, mean, np.nan_to_num(spread), fmt="o-", capsize=3)
+    known = ~np.isnan(mean)
+    bars = np.nan_to_num(spread[known])
+    axes.errorbar(values[known], mean[known], bars, fmt="o-", capsize=3)
     return axes
 
 
-def save_all(run: Run, folder: PathLike, truth: Optional[Trajectory] = None) -> list[Path]:
+def save_all(
+    run: Run, folder: PathLike, truth: Optional[Trajectory] = None
+) -> list[Path]:
     """Writes all plots of a run as PNG files; returns their paths. Convergence
     is that of the last frame of each surface that has iterations."""
     Path(folder).mkdir(parents=True, exist_ok=True)
@@ -225,5 +235,8 @@ def save_all(run: Run, folder: PathLike, truth: Optional[Trajectory] = None) -> 
         frames = run.iterations.where(surface=number)["frame"]
         if len(frames):
             last = int(frames[-1])
-            save(f"convergence_{number:03}", lambda: convergence(run, number, last))
+            save(
+                f"convergence_{number:03}",
+                lambda: convergence(run, number, last),
+            )
     return written

@@ -96,11 +96,18 @@ def _triangles(path: PathLike, rows: np.ndarray, vertices: int) -> np.ndarray:
         if name in (rows.dtype.names or ()):
             break
     else:
-        refuse(f"{path}: element face", brief(rows.dtype.names), "vertex_indices")
+        refuse(
+            f"{path}: element face", brief(rows.dtype.names), "vertex_indices"
+        )
     triangles = rows[name].astype(np.int32)
     if (rows[name + "_count"] != 3).any():
-        refuse(f"{path}: element face", "faces of other kinds", "triangles alone")
-    if triangles.size and not 0 <= triangles.min() <= triangles.max() < vertices:
+        refuse(
+            f"{path}: element face", "faces of other kinds", "triangles alone"
+        )
+    if (
+        triangles.size
+        and not 0 <= triangles.min() <= triangles.max() < vertices
+    ):
         refuse(
             f"{path}: element face",
             f"vertex {triangles.max()}",

@@ -87,11 +87,15 @@ def read_png(path: PathLike) -> np.ndarray:
     try:
         raw = zlib.decompress(b"".join(b for k, b in chunks if k == b"IDAT"))
     except zlib.error:
-        raise RunError(f"{path}: is damaged: expected a whole PNG file") from None
+        raise RunError(
+            f"{path}: is damaged: expected a whole PNG file"
+        ) from None
     if len(raw) != height * (1 + width * step):
         refuse(path, f"{len(raw)} bytes of pixels", f"{height} rows of {width}")
     rows = np.frombuffer(raw, np.uint8).reshape(height, 1 + width * step)
     pixels = _unfilter(path, rows, step)
     if bits == 16:
         pixels = pixels.view(">u2").astype(np.uint16)
-    return pixels.reshape((height, width) + ((channels,) if channels > 1 else ()))
+    return pixels.reshape(
+        (height, width) + ((channels,) if channels > 1 else ())
+    )

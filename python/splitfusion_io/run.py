@@ -96,7 +96,8 @@ class Run:
         """RunError if the folder is none of a run."""
         self.folder = Path(folder)
         known = any(
-            (self.folder / name).is_file() for name in ("run.json", "trajectory.txt")
+            (self.folder / name).is_file()
+            for name in ("run.json", "trajectory.txt")
         )
         if not known:
             raise RunError(
@@ -153,7 +154,11 @@ class Run:
         frames = read_json_lines(path)
         for number, frame in enumerate(frames, start=1):
             if type(frame.get("frame")) is not int:
-                refuse(f"{path}:{number}: field 'frame'", frame.get("frame"), "an index")
+                refuse(
+                    f"{path}:{number}: field 'frame'",
+                    frame.get("frame"),
+                    "an index",
+                )
         return frames
 
     @cached_property
@@ -176,7 +181,9 @@ class Run:
     def surfaces(self) -> dict[int, Surface]:
         """Surfaces by id; 0 is the background."""
         whole = str(self.marker.get("outputs", {}).get("warped_whole", "false"))
-        folders = sorted(p for p in self.folder.glob("surfaces/*") if p.is_dir())
+        folders = sorted(
+            p for p in self.folder.glob("surfaces/*") if p.is_dir()
+        )
         found = [Surface(folder, whole == "true") for folder in folders]
         return {surface.id: surface for surface in found}
 
@@ -209,11 +216,13 @@ class Run:
         return read_png(self.folder / "pictures" / f"{frame:06}_{kind}.png")
 
     def uncertainty(self, frame: int, surface_id: int) -> Mesh:
-        """The mesh (camera frame) with standard deviations in `extra`, metres."""
+        """The mesh (camera frame), with standard deviations in `extra`, m."""
         name = f"{frame:06}_{surface_id:03}.ply"
         return read_ply(self.folder / "uncertainty" / name)
 
-    def series(self, surface_id: int, key: str) -> tuple[np.ndarray, np.ndarray]:
+    def series(
+        self, surface_id: int, key: str
+    ) -> tuple[np.ndarray, np.ndarray]:
         """A number of a surface over time, as `residual_rms`, `nodes` or
         `seconds.solve`: frame indices, and values (NaN where it is none)."""
         found = []
@@ -240,12 +249,15 @@ class Run:
         for path in sorted(self.folder.rglob("*")):
             if path.is_file():
                 name = path.relative_to(self.folder).as_posix()
-                found.append(RunFile(name, _kind_of(name)[0], path.stat().st_size))
+                found.append(
+                    RunFile(name, _kind_of(name)[0], path.stat().st_size)
+                )
         return found
 
     def read(self, path: str) -> Any:
-        """What a file of `files()` holds, by its kind: an object of this package,
-        arrays, a dict, lists or text. RunError for files that are named only."""
+        """What a file of `files()` holds, by its kind: an object of this
+        package, an array, a dict, a list or text. RunError for files that are named only.
+        """
         kind, reader = _kind_of(path)
         if kind == "options":
             return read_options(self.folder / path)

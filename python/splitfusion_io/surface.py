@@ -39,8 +39,8 @@ class Surface:
     """The folder `surfaces/NNN_LABEL`. Files are read when they are needed."""
 
     def __init__(self, folder: PathLike, whole: bool = False) -> None:
-        """`whole`: warped meshes have what was seen only later, too, as of a run
-        with `--warped_whole`."""
+        """`whole`: warped meshes have what was seen only later, too, as of a
+        run with `--warped_whole`."""
         self.folder = Path(folder)
         number, underscore, self.label = self.folder.name.partition("_")
         if not underscore or not number.isdigit():
@@ -68,7 +68,9 @@ class Surface:
     def motions(self) -> Motions:
         """Motions of all nodes, camera from canonical."""
         motions = read_motions(self.folder / "motions.bin")
-        if len(motions.frames) and motions.rotations.shape[1] != len(self.graph):
+        if len(motions.frames) and motions.rotations.shape[1] != len(
+            self.graph
+        ):
             refuse(
                 self.folder / "motions.bin",
                 f"{motions.rotations.shape[1]} nodes",
@@ -109,7 +111,9 @@ class Surface:
 
     def nodes_at(self, frame: int) -> np.ndarray:
         """Places of the nodes in a frame, N x 3, camera frame, metres."""
-        return self.graph.positions + self.motions.translations[self._row(frame)]
+        return (
+            self.graph.positions + self.motions.translations[self._row(frame)]
+        )
 
     def mesh_at(self, frame: int) -> Mesh:
         """The mesh in a frame as in `warped/FRAME.ply`: all vertices, and the
@@ -133,7 +137,9 @@ class Surface:
     @property
     def warped_frames(self) -> list[int]:
         """Frames of which there is a file in `warped/`, ascending."""
-        return sorted(int(p.stem) for p in self.folder.glob("warped/[0-9]*.ply"))
+        return sorted(
+            int(p.stem) for p in self.folder.glob("warped/[0-9]*.ply")
+        )
 
     def residuals(self) -> dict[str, np.ndarray]:
         """`residuals.h5` (needs h5py): arrays `frame`, `node` and `depth`, the

@@ -109,7 +109,9 @@ class TrajectoryErrors:
         return float(np.sqrt(np.mean(self.errors**2)))
 
 
-def trajectory_errors(estimate: Trajectory, truth: Trajectory) -> TrajectoryErrors:
+def trajectory_errors(
+    estimate: Trajectory, truth: Trajectory
+) -> TrajectoryErrors:
     """Absolute trajectory errors, as docs/evaluation.md defines them."""
     i, j = match(estimate.timestamps, truth.timestamps)
     if len(i) < 3:

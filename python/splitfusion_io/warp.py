@@ -132,8 +132,8 @@ class WarpField:
     def __init__(
         self, graph: Graph, rotations: np.ndarray, translations: np.ndarray
     ) -> None:
-        """`rotations` N x 3 x 3 and `translations` N x 3 (metres) of the graph's
-        nodes, camera from canonical."""
+        """`rotations` N x 3 x 3 and `translations` N x 3 (metres) of the
+        graph's nodes, camera from canonical."""
         g = graph.positions
         moved = np.einsum("nij,nj->ni", rotations.astype(float), -g)
         offset = moved + (translations.astype(float) + g)
@@ -141,19 +141,24 @@ class WarpField:
         self.offset = offset.astype(np.float32)
 
     def points(self, skinning: Skinning, points: np.ndarray) -> np.ndarray:
-        """Eq. 2: P x 3 canonical to P x 3 float32 in the camera frame, metres."""
+        """Eq. 2: P x 3 canonical to P x 3 float32 in the camera frame, m."""
         points = np.asarray(points, np.float32).reshape(-1, 3)
         warped = np.zeros_like(points)
         for k in range(skinning.nodes.shape[1]):
             node, weight = skinning.nodes[:, k], skinning.weights[:, k, None]
-            moved = np.einsum("pij,pj->pi", self.linear[node], points)
+            linear = self.linear[node]
+            moved = linear[:, :, 0] * points[:, :1]
+            moved += linear[:, :, 1] * points[:, 1:2]
+            moved += linear[:, :, 2] * points[:, 2:]
             warped += weight * (moved + self.offset[node])
         return warped
 
     def normals(self, skinning: Skinning, normals: np.ndarray) -> np.ndarray:
-        """Unit normals, P x 3 canonical to P x 3 float32 in the camera frame."""
+        """Unit normals, P x 3 canonical to P x 3 float32, camera frame."""
         blended = self._blend(skinning)
-        turned = np.einsum("pij,pj->pi", blended, np.asarray(normals, np.float32))
+        turned = np.einsum(
+            "pij,pj->pi", blended, np.asarray(normals, np.float32)
+        )
         length = np.linalg.norm(turned, axis=1, keepdims=True)
         return turned / np.where(length > 0, length, np.float32(1))
 

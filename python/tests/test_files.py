@@ -45,16 +45,24 @@ class Text(Files):
         none = self.write("d.json", '{"format_version": "x"}')
         self.assertEqual(sf.read_json(older), {"x": 1})
         self.assertEqual(sf.read_json(now)["format_version"], 1)
-        self.refused("c.json: field 'format_version': 2: expected at most 1",
-                     sf.read_json, newer)
-        self.refused("'format_version': x: expected a whole", sf.read_json, none)
+        self.refused(
+            "c.json: field 'format_version': 2: expected at most 1",
+            sf.read_json,
+            newer,
+        )
+        self.refused(
+            "'format_version': x: expected a whole", sf.read_json, none
+        )
 
     def test_broken_json(self):
         for text in ("", "[1]", '{"x": NaN}', '{"x"', "[" * 100000):
             path = self.write("a.json", text)
             self.refused("a.json: ", sf.read_json, path)
-        self.refused("none.json: cannot be opened",
-                     sf.read_json, self.folder / "none.json")
+        self.refused(
+            "none.json: cannot be opened",
+            sf.read_json,
+            self.folder / "none.json",
+        )
 
     def test_lines_of_json(self):
         path = self.write("a.jsonl", '{"frame": 0}\n{"frame": 1}\n{"fra')
@@ -81,7 +89,9 @@ class Text(Files):
         points = np.array([[0.1, -0.2, 2.0]])
         pixels = camera.project(points)
         np.testing.assert_allclose(pixels, [[345, 189]])
-        np.testing.assert_allclose(camera.unproject(pixels, points[:, 2]), points)
+        np.testing.assert_allclose(
+            camera.unproject(pixels, points[:, 2]), points
+        )
         path = self.write("c.txt", "500 510 320 240 640 480\n")
         self.refused("c.txt:1: 500 510", sf.read_calibration, path)
         path = self.write("c.txt", "525 525 320 240 -0.02 0 0 0 0 0 1\n")
@@ -95,8 +105,11 @@ class Text(Files):
         x = found.world_from_camera[0, :3, :3] @ [1, 0, 0]
         np.testing.assert_allclose(x, [0, 1, 0], atol=1e-7)
         np.testing.assert_allclose(found.positions[1], [1, 2, 3])
-        self.refused("t.txt: timestamp: 1.0", sf.read_trajectory,
-                     self.write("t.txt", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"))
+        self.refused(
+            "t.txt: timestamp: 1.0",
+            sf.read_trajectory,
+            self.write("t.txt", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"),
+        )
 
     def test_errors_of_a_moved_trajectory_are_its_noise_alone(self):
         times = np.arange(4.0)
@@ -109,8 +122,12 @@ class Text(Files):
         poses[:, :3, 3] = poses[:, :3, 3] @ turn.T + [5, 6, 7]
         found = sf.trajectory_errors(sf.Trajectory(times + 0.01, poses), truth)
         self.assertAlmostEqual(found.ate, 0.02)
-        self.refused("3 or more", sf.trajectory_errors,
-                     sf.Trajectory(times + 9, poses), truth)
+        self.refused(
+            "3 or more",
+            sf.trajectory_errors,
+            sf.Trajectory(times + 9, poses),
+            truth,
+        )
 
 
 def ply(vertex_lines, vertices, faces):
@@ -128,18 +145,27 @@ XYZ = "property float x\nproperty float y\nproperty float z\n"
 
 class Binary(Files):
     def test_meshes(self):
-        data = ply(XYZ + "property float sigma\n",
-                   [(0, 0, 1, 0.5), (1, 0, 1, 0.25), (0, 1, 1, 2)], [(0, 1, 2)])
+        data = ply(
+            XYZ + "property float sigma\n",
+            [(0, 0, 1, 0.5), (1, 0, 1, 0.25), (0, 1, 1, 2)],
+            [(0, 1, 2)],
+        )
         mesh = sf.read_ply(self.write("a.ply", data))
         np.testing.assert_array_equal(mesh.triangles, [[0, 1, 2]])
         np.testing.assert_array_equal(mesh.vertices[1], [1, 0, 1])
         np.testing.assert_array_equal(mesh.extra["sigma"], [0.5, 0.25, 2])
         self.assertIsNone(mesh.normals)
-        self.refused("bytes: expected at least",
-                     sf.read_ply, self.write("a.ply", data[:-1]))
+        self.refused(
+            "bytes: expected at least",
+            sf.read_ply,
+            self.write("a.ply", data[:-1]),
+        )
         bad = ply(XYZ, [(0, 0, 1)], [(0, 0, 1)])
-        self.refused("vertex 1: expected indices of 1",
-                     sf.read_ply, self.write("a.ply", bad))
+        self.refused(
+            "vertex 1: expected indices of 1",
+            sf.read_ply,
+            self.write("a.ply", bad),
+        )
         self.refused("header", sf.read_ply, self.write("a.ply", b"nothing"))
 
     def png(self, filters, rows, bits, color, step):
@@ -151,12 +177,21 @@ class Binary(Files):
                 a = row[i - step] if i >= step else 0
                 b, c = above[i], above[i - step] if i >= step else 0
                 p = a + b - c
-                near = min((abs(p - x), n, x) for n, x in enumerate((a, b, c)))[2]
-                raw += bytes([(value - (0, a, b, (a + b) // 2, near)[kind]) & 255])
+                near = min((abs(p - x), n, x) for n, x in enumerate((a, b, c)))[
+                    2
+                ]
+                raw += bytes(
+                    [(value - (0, a, b, (a + b) // 2, near)[kind]) & 255]
+                )
             above = row
-        chunks = [(b"IHDR", struct.pack(">IIBBBBB", 2, len(rows), bits, color,
-                                        0, 0, 0)),
-                  (b"IDAT", zlib.compress(raw)), (b"IEND", b"")]
+        chunks = [
+            (
+                b"IHDR",
+                struct.pack(">IIBBBBB", 2, len(rows), bits, color, 0, 0, 0),
+            ),
+            (b"IDAT", zlib.compress(raw)),
+            (b"IEND", b""),
+        ]
         data = b"\x89PNG\r\n\x1a\n"
         for kind, body in chunks:
             data += struct.pack(">I", len(body)) + kind + body
@@ -171,7 +206,9 @@ class Binary(Files):
         data = self.png(range(5), [bytes(r[:4]) for r in rows], 16, 0, 2)
         image = sf.read_png(self.write("a.png", data))
         wide = rows.astype(np.uint16)
-        np.testing.assert_array_equal(image[:, 0], wide[:, 0] * 256 + wide[:, 1])
+        np.testing.assert_array_equal(
+            image[:, 0], wide[:, 0] * 256 + wide[:, 1]
+        )
         self.refused("whole PNG", sf.read_png, self.write("a.png", data[:-9]))
 
     def motions(self, version):
@@ -207,14 +244,24 @@ class Binary(Files):
         self.refused("is damaged", sf.read_motions, self.write("m.bin", turned))
 
     def test_bad_graphs_name_the_field(self):
-        good = {"node_spacing": 0.1, "neighbors_per_point": 4,
-                "positions": [[0, 0, 1], [0, 0, 2]], "edges": [[1], [0]]}
+        good = {
+            "node_spacing": 0.1,
+            "neighbors_per_point": 4,
+            "positions": [[0, 0, 1], [0, 0, 2]],
+            "edges": [[1], [0]],
+        }
         graph = sf.read_graph(self.write("graph.json", json.dumps(good)))
         self.assertEqual(len(graph), 2)
-        for key, value in (("node_spacing", -1), ("neighbors_per_point", 0),
-                           ("positions", [[0, 0]]), ("positions", []),
-                           ("edges", [[2], [0]]), ("edges", [[1]]),
-                           ("first_seen", [0]), ("parts", [[1, 0, None]])):
+        for key, value in (
+            ("node_spacing", -1),
+            ("neighbors_per_point", 0),
+            ("positions", [[0, 0]]),
+            ("positions", []),
+            ("edges", [[2], [0]]),
+            ("edges", [[1]]),
+            ("first_seen", [0]),
+            ("parts", [[1, 0, None]]),
+        ):
             path = self.write("graph.json", json.dumps({**good, key: value}))
             self.refused(f"field '{key}'", sf.read_graph, path)
         newer = json.dumps({**good, "format_version": 2})
@@ -224,13 +271,20 @@ class Binary(Files):
 class Warps(unittest.TestCase):
     def test_weights_by_hand(self):
         # Three nodes on a line; of two neighbours the third sets d_max.
-        graph = sf.Graph(1.0, 2, np.array([[0.0, 0, 0], [1, 0, 0], [4, 0, 0]]),
-                         [[1], [0, 2], [1]])
+        graph = sf.Graph(
+            1.0,
+            2,
+            np.array([[0.0, 0, 0], [1, 0, 0], [4, 0, 0]]),
+            [[1], [0, 2], [1]],
+        )
         found = sf.skin(graph, np.array([[0.25, 0, 0]]))
         near, far = (1 - 0.25 / 3.75) ** 2, (1 - 0.75 / 3.75) ** 2
         np.testing.assert_array_equal(found.nodes, [[0, 1]])
         np.testing.assert_allclose(
-            found.weights, [[near / (near + far), far / (near + far)]], rtol=1e-6)
+            found.weights,
+            [[near / (near + far), far / (near + far)]],
+            rtol=1e-6,
+        )
 
     def test_a_rigid_motion_moves_all_points_alike(self):
         graph = sf.Graph(0.0, 4, np.array([[0.5, 0, 0]]), [[]])
@@ -238,22 +292,34 @@ class Warps(unittest.TestCase):
         field = sf.WarpField(graph, turn, np.array([[0, 0, 2]], np.float32))
         points = np.array([[1.5, 0, 0], [0.5, 1, 0]])
         skinning = sf.skin(graph, points)
-        np.testing.assert_allclose(field.points(skinning, points),
-                                   [[0.5, 1, 2], [-0.5, 0, 2]], atol=1e-7)
-        np.testing.assert_allclose(field.normals(skinning, np.eye(3)[:2]),
-                                   [[0, 1, 0], [-1, 0, 0]], atol=1e-7)
+        np.testing.assert_allclose(
+            field.points(skinning, points),
+            [[0.5, 1, 2], [-0.5, 0, 2]],
+            atol=1e-7,
+        )
+        np.testing.assert_allclose(
+            field.normals(skinning, np.eye(3)[:2]),
+            [[0, 1, 0], [-1, 0, 0]],
+            atol=1e-7,
+        )
 
     def test_the_nearest_of_many(self):
         random = np.random.default_rng(2)
         targets = random.random((300, 3), np.float32)
         queries = random.random((2000, 3), np.float32) * 3 - 1
         away = ((queries[:, None] - targets[None]) ** 2).sum(axis=2)
-        np.testing.assert_array_equal(sf.nearest(queries, targets),
-                                      away.argmin(axis=1))
+        np.testing.assert_array_equal(
+            sf.nearest(queries, targets), away.argmin(axis=1)
+        )
 
     def test_parts_are_in_use_in_their_frames(self):
-        graph = sf.Graph(0.1, 4, np.zeros((3, 3)), [[], [], []],
-                         parts=[sf.Part(0, 0, 5), sf.Part(2, 5, None)])
+        graph = sf.Graph(
+            0.1,
+            4,
+            np.zeros((3, 3)),
+            [[], [], []],
+            parts=[sf.Part(0, 0, 5), sf.Part(2, 5, None)],
+        )
         self.assertEqual(list(graph.in_use(4)), [True, True, False])
         self.assertEqual(list(graph.in_use(5)), [False, False, True])
 

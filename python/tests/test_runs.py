@@ -21,14 +21,20 @@ NAMED_ONLY = {"volume", "checkpoint", "page"}
 def call(program, *arguments):
     """A program of the toolkit; its exit status, and what it said."""
     command = [str(Path(BIN) / program), *map(str, arguments)]
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    result = subprocess.run(
+        command, capture_output=True, text=True, check=False
+    )
     return result.returncode, result.stdout + result.stderr
 
 
 def presets(folder):
     """All presets, as sf_run lists them where there is none of the name."""
-    _, text = call("sf_run", f"--sequence={folder}", f"--output={folder}/none",
-                   "--preset=?")
+    _, text = call(
+        "sf_run",
+        f"--sequence={folder}",
+        f"--output={folder}/none",
+        "--preset=?",
+    )
     return text.split("expected ")[1].strip().split(", ")
 
 
@@ -49,20 +55,41 @@ class Runs(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.folder = Path(folder.name)
         cls.sequence = cls.folder / "sequence"
-        cls.make("sf_synth", "--width=160", "--height=120", "--frames=4",
-                 f"--output={cls.sequence}", "--mesh_every=2", "--track_points=20")
+        cls.make(
+            "sf_synth",
+            "--width=160",
+            "--height=120",
+            "--frames=4",
+            f"--output={cls.sequence}",
+            "--mesh_every=2",
+            "--track_points=20",
+        )
         cls.presets = presets(cls.sequence)
         for preset in cls.presets:
             more = [f"--preset={preset}", "--pictures_every=0"]
             if preset == "splitfusion":
-                more = ["--covariance=2", "--freeze=2", "--full_report",
-                        "--checkpoint_every=2", "--keep_checkpoints",
-                        "--pictures_every=3"]
-            cls.make("sf_run", f"--sequence={cls.sequence}", "--warped_every=1",
-                     f"--output={cls.folder / preset}", *more)
+                more = [
+                    "--covariance=2",
+                    "--freeze=2",
+                    "--full_report",
+                    "--checkpoint_every=2",
+                    "--keep_checkpoints",
+                    "--pictures_every=3",
+                ]
+            cls.make(
+                "sf_run",
+                f"--sequence={cls.sequence}",
+                "--warped_every=1",
+                f"--output={cls.folder / preset}",
+                *more,
+            )
         cls.run_folder = cls.folder / "splitfusion"
-        cls.make("sf_evaluate", f"--run={cls.run_folder}", "--samples=2000",
-                 f"--ground_truth={cls.sequence}")
+        cls.make(
+            "sf_evaluate",
+            f"--run={cls.run_folder}",
+            "--samples=2000",
+            f"--ground_truth={cls.sequence}",
+        )
 
     @classmethod
     def make(cls, *command):
@@ -84,8 +111,9 @@ class Runs(unittest.TestCase):
                         self.assertLess(away.max(), 1e-5)
                         turned = np.abs(found.normals - expected.normals)
                         self.assertLess(turned.max(), 1e-4)
-                        np.testing.assert_array_equal(found.triangles,
-                                                      expected.triangles)
+                        np.testing.assert_array_equal(
+                            found.triangles, expected.triangles
+                        )
                         compared[preset] += 1
         # A rigid background alone has no warped meshes.
         for preset in ("splitfusion", "online", "cofusion", "dynamicfusion"):
@@ -109,7 +137,9 @@ class Runs(unittest.TestCase):
         self.assertEqual(len(run.trajectory), summary["frames"])
         truth = sf.read_trajectory(self.sequence / "gt" / "groundtruth.txt")
         found = sf.trajectory_errors(run.trajectory, truth)
-        self.assertAlmostEqual(found.ate, run.evaluation["ate"]["rmse"], places=9)
+        self.assertAlmostEqual(
+            found.ate, run.evaluation["ate"]["rmse"], places=9
+        )
         for item in summary["surfaces"]:
             surface = run.surface(item["id"])
             self.assertEqual(len(surface.graph), item["nodes"])
@@ -121,9 +151,15 @@ class Runs(unittest.TestCase):
         self.assertIn(1, run.mask(0))
         self.assertEqual(run.picture(0, "input").shape, (120, 160, 3))
         self.assertGreater(run.uncertainty(2, 1).extra["sigma"].min(), 0)
-        self.assertEqual(len(run.iterations), sum(
-            r["solver"]["iterations"] for f in run.frames
-            for s in f["surfaces"] for r in s["rounds"]))
+        self.assertEqual(
+            len(run.iterations),
+            sum(
+                r["solver"]["iterations"]
+                for f in run.frames
+                for s in f["surfaces"]
+                for r in s["rounds"]
+            ),
+        )
 
     def test_points_ride_on_the_surface(self):
         run = sf.Run(self.run_folder)
@@ -135,8 +171,9 @@ class Runs(unittest.TestCase):
         self.assertLess(tied.distances.max(), 0.0021)
         np.testing.assert_allclose(surface.follow(tied, 1), points, atol=1e-6)
         away = surface.follow(tied, 3) - surface.vertices_at(3)[tied.vertices]
-        np.testing.assert_allclose(np.linalg.norm(away, axis=1), tied.distances,
-                                   atol=1e-6)
+        np.testing.assert_allclose(
+            np.linalg.norm(away, axis=1), tied.distances, atol=1e-6
+        )
 
     def test_bad_arguments_are_named(self):
         run = sf.Run(self.run_folder)
@@ -145,8 +182,10 @@ class Runs(unittest.TestCase):
             ("frame: 99: expected", lambda: run.surface(1).field(99)),
             ("frame: 99: expected", lambda: run.world_from_camera(99)),
             ("no run.json", lambda: sf.Run(self.folder)),
-            ("volume: expected a kind that is read",
-             lambda: run.read("surfaces/000_background/tsdf.vdb")),
+            (
+                "volume: expected a kind that is read",
+                lambda: run.read("surfaces/000_background/tsdf.vdb"),
+            ),
         ):
             with self.assertRaises(sf.RunError) as caught:
                 ask()
@@ -156,8 +195,11 @@ class Runs(unittest.TestCase):
         root = Path(sf.__file__).resolve().parents[1]
         return subprocess.run(
             [sys.executable, "-m", "splitfusion_io", *map(str, arguments)],
-            capture_output=True, text=True, check=False,
-            env={**os.environ, "PYTHONPATH": str(root)})
+            capture_output=True,
+            text=True,
+            check=False,
+            env={**os.environ, "PYTHONPATH": str(root)},
+        )
 
     def test_the_overview(self):
         result = self.module(self.run_folder)
@@ -183,12 +225,21 @@ class Runs(unittest.TestCase):
     def test_plots(self):
         plots = self.folder / "plots"
         truth = self.sequence / "gt" / "groundtruth.txt"
-        result = self.module(self.run_folder, f"--plots={plots}",
-                             f"--truth={truth}")
+        result = self.module(
+            self.run_folder, f"--plots={plots}", f"--truth={truth}"
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         names = {path.name for path in plots.iterdir()}
-        self.assertLessEqual({"trajectory.png", "errors.png", "costs_001.png",
-                              "counts_001.png", "convergence_001.png"}, names)
+        self.assertLessEqual(
+            {
+                "trajectory.png",
+                "errors.png",
+                "costs_001.png",
+                "counts_001.png",
+                "convergence_001.png",
+            },
+            names,
+        )
         for path in plots.iterdir():
             self.assertGreater(sf.read_png(path).std(), 1)
 
