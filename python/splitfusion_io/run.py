@@ -256,8 +256,8 @@ class Run:
 
     def read(self, path: str) -> Any:
         """What a file of `files()` holds, by its kind: an object of this
-        package, an array, a dict, a list or text. RunError for files that are named only.
-        """
+        package, an array, a dict, a list or text. RunError for files that are
+        named only."""
         kind, reader = _kind_of(path)
         if kind == "options":
             return read_options(self.folder / path)

@@ -80,6 +80,7 @@ class Runs(unittest.TestCase):
                 "sf_run",
                 f"--sequence={cls.sequence}",
                 "--warped_every=1",
+                "--background_voxel=0.02",
                 f"--output={cls.folder / preset}",
                 *more,
             )
