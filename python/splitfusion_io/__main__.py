@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections import Counter
 from typing import Any, Optional
@@ -86,4 +87,6 @@ def main(arguments: Optional[list[str]] = None) -> int:
 
 
 if __name__ == "__main__":
+    if hasattr(signal, "SIGPIPE"):  # As `| head` ends it.
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     sys.exit(main())
