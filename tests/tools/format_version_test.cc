@@ -43,8 +43,8 @@ class FormatVersion : public SfRun {
                                        " --output=" + (folder_ / "page.html"));
   }
   ProgramResult Refine() const {
-    return RunProgram("sf_refine", "--run=" + (folder_ / "run") +
-                                       " --output=" + (folder_ / "refined"));
+    return RunProgram("sf_refine",
+                      (folder_ / "run") + " --output=" + (folder_ / "refined"));
   }
 
   /// Gives a file of the run another version; 0: none.
