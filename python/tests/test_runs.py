@@ -244,6 +244,27 @@ class Runs(unittest.TestCase):
         for path in plots.iterdir():
             self.assertGreater(sf.read_png(path).std(), 1)
 
+    @unittest.skipIf(missing("matplotlib"), "matplotlib is not installed")
+    def test_examples(self):
+        root = Path(sf.__file__).resolve().parents[1]
+        for name in ("look_at_a_run.py", "follow_points.py"):
+            result = subprocess.run(
+                [sys.executable, root / "examples" / name, self.run_folder],
+                capture_output=True,
+                text=True,
+                check=False,
+                cwd=self.folder,
+                env={
+                    **os.environ,
+                    "PYTHONPATH": str(root),
+                    "MPLBACKEND": "Agg",
+                },
+            )
+            self.assertEqual(result.returncode, 0, result.stderr)
+        rows = sf.read_csv(self.folder / "followed_points.csv")
+        self.assertEqual(len(rows), 12 * len(sf.Run(self.run_folder).frames))
+        self.assertFalse(np.isnan(rows["x"]).any())
+
 
 if __name__ == "__main__":
     unittest.main()
