@@ -3,8 +3,10 @@
 # 3D error of the motions that are annotated.
 #   tools/reproduce/deepdeform.sh FOLDER... --output=DIR [flags of sf_run]
 # FOLDER: seqNNN of train or val: color (or rgb), depth (millimetres) and
-# intrinsics.txt (or camera.txt); mask/FRAME_OBJECT.png are given to sf_run with
-# all objects as non-rigid, other frames have none. Annotations are
+# intrinsics.txt (or camera.txt). The masks of a few frames, mask/FRAME.png or
+# mask/FRAME_OBJECT.png, are given to sf_run as non-rigid objects, which it
+# keeps in the frames between; --masks=none --preset=dynamicfusion takes the
+# scene for one, --masks=DIR others. Annotations are
 # FOLDER/scene_flow/OBJECT_SOURCE_TARGET.sflow, and the matches of
 # train_matches.json or val_matches.json, where there is one beside seqNNN or
 # two folders above it. Nothing is written into FOLDER. Finished runs are kept.
@@ -45,7 +47,9 @@ for folder in "${folders[@]}"; do
   if [[ -d "$sequence/mask" && " ${flags[*]-} " != *" --masks="* ]]; then
     labels_of "$sequence" >"$sequence/labels.csv"
     more=(--format=tum --pictures_every=0 --masks="$sequence/mask"
-      --labels="$sequence/labels.csv")
+      --max_missed_frames=100000)
+    [[ ! -s "$sequence/labels.csv" ]] ||
+      more+=(--labels="$sequence/labels.csv")
   fi
   reconstruct "$sequence" "$output/$name" "${more[@]}"
   evaluate "$output/$name" --depth_every=1

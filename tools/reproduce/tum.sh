@@ -19,7 +19,7 @@ camera_of() {
     *freiburg1* | *fr1*) echo 517.3 516.5 318.6 255.3 ;;
     *freiburg2* | *fr2*) echo 520.9 521.0 325.1 249.7 ;;
     *freiburg3* | *fr3*) echo 535.4 539.2 320.1 247.6 ;;
-    *) refuse "$1: which camera? expected fr1 or fr3 in its name, or camera.txt" ;;
+    *) refuse "$1: no camera.txt: expected one, or fr1 or fr3 in the name" ;;
   esac
 }
 
