@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # What the scripts of this folder share; they source it. Bash.
 # Sets root, bin, output, flags (of sf_run) and folders by the arguments.
 
