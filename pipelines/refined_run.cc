@@ -223,9 +223,9 @@ int RefinedRun::Write(RunFolder* folder) {
                       [&](std::ostream& out) { out << refinement.lines; });
   WriteOptions(to);
   const Json summary =
-      SummaryWith(refinement, ReadJsonOrNull(RunPaths(root_).Summary()));
+      SummaryWith(refinement, ReadVersionedOrNull(RunPaths(root_).Summary()));
   WriteHtmlReport(to, summary);
-  WriteJson(to.Summary(), summary, 2);
+  WriteJson(to.Summary(), Versioned(summary), 2);
   folder->CheckHeld();
   folder->Publish(RunStatus::kComplete);
   return refinement.hidden;

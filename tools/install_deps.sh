@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what building, testing and running need on Debian 12. Run as root, or
 # as a user with sudo. Says what it installs; a second run finds all in place.
-#   install_deps.sh [--tests]    with a browser, in which tests look at pages
+#   install_deps.sh [--tests]    with a browser, in which tests look at pages, and
+#                                NumPy, h5py and matplotlib for those of python/
 set -euo pipefail
 
 packages=(
@@ -13,7 +14,7 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev doxygen python3-onnx
 )
 if [[ "${1:-}" == --tests ]]; then
-  packages+=(chromium)
+  packages+=(chromium python3-numpy python3-h5py python3-matplotlib)
 fi
 # The programs of report pages; a node of another origin has its own npm.
 command -v node >/dev/null || packages+=(nodejs)

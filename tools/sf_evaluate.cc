@@ -123,7 +123,7 @@ void Publish(const std::string& table, const nlohmann::ordered_json& json,
              const std::string& default_path) {
   std::cout << table;
   const std::string& path = FLAGS_output.empty() ? default_path : FLAGS_output;
-  if (!path.empty()) WriteJson(path, json, 2);
+  if (!path.empty()) WriteJson(path, Versioned(json), 2);
 }
 
 void EvaluateTrajectory(const EvaluationOptions& options) {
@@ -175,7 +175,7 @@ void CalibrateUncertainty(const RecordedRun& run,
   const MotionCalibration calibration =
       Calibrate(MotionErrors(run, surfaces, truth, FLAGS_uncertainty_every),
                 FLAGS_uncertainty_scale);
-  WriteJson(FLAGS_calibration + ".json", ToJson(calibration), 2);
+  WriteJson(FLAGS_calibration + ".json", Versioned(ToJson(calibration)), 2);
   WriteFileAtomically(FLAGS_calibration + ".svg", [&](std::ostream& out) {
     out << CurveChartSvg(CalibrationChart(calibration));
   });

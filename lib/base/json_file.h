@@ -7,6 +7,7 @@
 #include <string>
 
 #include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/format_version.h"
 
 namespace splitfusion {
 
@@ -33,6 +34,16 @@ Json ReadJsonOrNull(const std::string& path) {
   std::ifstream stream(path);
   Json value = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
   return value.is_discarded() ? Json() : value;
+}
+
+/// The same of a file that has a `format_version`, or had none yet.
+///
+/// @throw InputError if it is of a newer version than this program knows.
+template <typename Json = nlohmann::ordered_json>
+Json ReadVersionedOrNull(const std::string& path) {
+  Json value = ReadJsonOrNull<Json>(path);
+  CheckFormatVersion(path, value);
+  return value;
 }
 
 }  // namespace splitfusion

@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormatVersion = 1;
-
 /// Relative, and without names that lead elsewhere.
 bool IsPathInside(const fs::path& path) {
   return !path.empty() && path.is_relative() &&
@@ -169,13 +167,9 @@ void WriteOwnershipMarker(const std::string& path,
 
 std::optional<OwnershipMarker> ReadOwnershipMarker(const std::string& path) {
   if (!std::ifstream(path)) return std::nullopt;
-  const Json json = ReadJsonOrNull(path);
+  const Json json = ReadVersionedOrNull(path);
   OwnershipMarker marker;
   try {
-    if (json.at("format_version").get<int>() != kFormatVersion) {
-      throw InputError(path + ": is of another version than " +
-                       std::to_string(kFormatVersion));
-    }
     marker.program = json.at("program").get<std::string>();
     marker.id = json.at("id").get<std::string>();
     for (const Json& file : json.at("files")) {

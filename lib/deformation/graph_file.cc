@@ -11,6 +11,7 @@
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/brief_json.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/format_version.h"
 
 namespace splitfusion {
 namespace {
@@ -176,7 +177,8 @@ void WriteGraph(const std::string& path, const DeformationGraph& graph,
     parts.push_back(
         {part.node, part.first_frame, ends ? Json(part.end_frame) : Json()});
   }
-  const Json json = {{"node_spacing", graph.node_spacing},
+  const Json json = {{"format_version", kFormatVersion},
+                     {"node_spacing", graph.node_spacing},
                      {"neighbors_per_point", neighbors_per_point},
                      {"positions", positions},
                      {"edges", graph.neighbors},
@@ -194,6 +196,7 @@ DeformationGraph ReadGraph(const std::string& path, int* neighbors_per_point) {
                      ": expected a JSON object with node_spacing, "
                      "neighbors_per_point, positions, edges");
   }
+  CheckFormatVersion(path, json);
   if (neighbors_per_point != nullptr) {
     *neighbors_per_point = ParseNeighborsPerPoint(path, json);
   }

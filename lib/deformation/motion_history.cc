@@ -14,6 +14,7 @@
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/quoted.h"
 
 namespace splitfusion {
 namespace {
@@ -124,8 +125,10 @@ std::string ReadMotionBytes(const std::string& path) {
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
   const Version* version = VersionOf(head);
   if (version == nullptr) {
-    throw InputError(path + ": expected a file that begins with '" + kMagic +
-                     "' or an older version of it");
+    throw InputError(path + ": begins with " + Quoted(head.substr(0, 8)) +
+                     ": expected '" + kMagic +
+                     "' or an older version of it; a newer one needs its "
+                     "programs");
   }
   ByteReader reader(head, kMagicBytes);
   const auto frames = reader.Read<std::uint32_t>();

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/format_version.h"
 
 namespace splitfusion {
 namespace {
@@ -46,6 +47,7 @@ std::map<int, TrueInstance> ReadInstances(const std::string& path) {
   std::ifstream stream(path);
   try {
     const auto json = nlohmann::json::parse(stream);
+    CheckFormatVersion(path, json);
     for (const auto& item : json.at("instances")) {
       instances[item.at("id").get<int>()] = {item.at("name").get<std::string>(),
                                              item.value("moving", false),

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/format_version.h"
 #include "splitfusion/lib/experiment/sequence_list.h"
 
 namespace splitfusion {
@@ -131,7 +132,8 @@ std::vector<NamedSettings> RowsFromJson(const Json& json) {
 Experiment WithoutSequences(const Json& json) {
   CheckFields(json, "experiment",
               {"about", "sequences", "set", "grid", "random", "rows", "repeat",
-               "baseline", "ground_truth", "evaluate"});
+               "baseline", "ground_truth", "evaluate", "format_version"});
+  CheckFormatVersion("experiment", json);
   Experiment experiment;
   experiment.set = SettingsAt(json, "set");
   if (json.contains("grid")) experiment.grid = GridFromJson(json["grid"]);

@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/experiment/design.h"
@@ -96,16 +95,16 @@ void AddExperiment(const ExperimentFolder& folder,
       }
     }
   }
-  const std::string text = JsonText(ToJson(experiment), 2);
-  const std::string hash = cv::format("_%016lx.json", StableHash(text));
+  const nlohmann::ordered_json json = ToJson(experiment);
+  const std::string hash =
+      cv::format("_%016lx.json", StableHash(JsonText(json, 2)));
   const std::vector<std::string> names = Entries(folder.Experiments());
   for (const std::string& name : names) {
     if (name.find(hash) != std::string::npos) return;
   }
   const std::string number = cv::format("%04zu", names.size() + 1);
-  WriteFileAtomically(
-      (fs::path(folder.Experiments()) / (number + hash)).string(),
-      [&](std::ostream& out) { out << text << '\n'; });
+  WriteJson((fs::path(folder.Experiments()) / (number + hash)).string(),
+            Versioned(json), 2);
 }
 
 bool IsExperiment(const ExperimentFolder& folder) {

@@ -27,7 +27,7 @@ double NumberAt(const Json& json, const char* key) {
 Json ReadObject(const std::string& run, const std::string& name) {
   const std::string path = (fs::path(run) / name).string();
   if (!fs::exists(path)) throw InputError(name + ": missing");
-  Json json = ReadJsonOrNull(path);
+  Json json = ReadVersionedOrNull(path);
   if (!json.is_object()) throw InputError(name + ": expected JSON");
   return json;
 }

@@ -51,7 +51,7 @@ NamedValues ValuesFromJson(const Json& json) {
 
 Json RecordJson(const TaskRecord& record) {
   Json json = ToJson(record.task);
-  json["format_version"] = 1;
+  json["format_version"] = kFormatVersion;
   json["state"] = ToString(record.state);
   json["attempts"] = record.attempts;
   json["exit_code"] = record.exit_code;
@@ -108,7 +108,7 @@ std::string TaskRecord::Error() const {
 }
 
 std::optional<TaskRecord> ReadTaskRecord(const std::string& folder) try {
-  const Json json = ReadJsonOrNull(RecordPath(folder));
+  const Json json = ReadVersionedOrNull(RecordPath(folder));
   if (!json.is_object()) return std::nullopt;
   TaskRecord record = RecordFromJson(json);
   const bool own =

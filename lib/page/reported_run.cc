@@ -77,12 +77,12 @@ ReportedRun ReportedRunOf(const RunPaths& paths, const Json& summary) {
   run.folder = paths.root();
   run.name = NameOf(paths);
   run.summary = summary;
-  const Json marker = ReadJsonOrNull(paths.Marker());
+  const Json marker = ReadVersionedOrNull(paths.Marker());
   if (marker.is_object()) {
     run.options = ObjectOf(marker, "identity_parts");
     run.defaults = ObjectOf(marker, "defaults");
   }
-  run.evaluation = ReadJsonOrNull(paths.Evaluation());
+  run.evaluation = ReadVersionedOrNull(paths.Evaluation());
   run.curves =
       GatherCurves(ReadJsonLines(paths.Frames()), summary.at("surfaces"));
   run.pictures = MontagesOf(paths);
@@ -90,7 +90,7 @@ ReportedRun ReportedRunOf(const RunPaths& paths, const Json& summary) {
 }
 
 ReportedRun ReadReportedRun(const RunPaths& paths) {
-  const Json summary = ReadJsonOrNull(paths.Summary());
+  const Json summary = ReadVersionedOrNull(paths.Summary());
   if (!summary.is_object()) {
     throw InputError(paths.Summary() +
                      ": expected the summary of a run that has ended");

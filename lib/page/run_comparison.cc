@@ -121,6 +121,7 @@ Json FactsOf(const ReportedRun& run) {
     if (!value.is_structured()) facts[key] = value;
   }
   const Json& seconds = summary.at("seconds_per_frame");
+  facts.erase("format_version");
   facts.erase("peak_memory_bytes");
   facts["peak memory, MB"] =
       1e-6 * summary.at("peak_memory_bytes").get<double>();

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "splitfusion/lib/base/atomic_file.h"
+#include "splitfusion/lib/base/format_version.h"
 #include "splitfusion/lib/base/hdf5_file.h"
 #include "splitfusion/lib/geometry/depth_comparison.h"
 
@@ -59,6 +60,8 @@ void WriteResiduals(const std::string& path, const DepthResiduals& residuals) {
   WritePathAtomically(path, [&](const std::string& temporary) {
     DepthResiduals copy = residuals;  // Both directions take what may change.
     Hdf5Writer file(temporary);
+    std::int32_t version = kFormatVersion;
+    file.Attribute("format_version", &version);
     Visit(&file, &copy);
     file.Close();
   });

@@ -109,7 +109,7 @@ void WriteText(const std::string& path, const std::string& text) {
 }  // namespace
 
 bool IsComplete(const RunPaths& paths) {
-  const nlohmann::ordered_json summary = ReadJsonOrNull(paths.Summary());
+  const nlohmann::ordered_json summary = ReadVersionedOrNull(paths.Summary());
   return summary.is_object() && summary.contains("complete") &&
          summary["complete"] == true;
 }
@@ -206,7 +206,7 @@ void RunDirectory::Finish(const RunEnding& ending,
   facts.skipped_frames = ending.skipped_frames;
   const nlohmann::ordered_json summary = ToJson(facts);
   if (write_page) write_page(paths_, summary);
-  WriteJson(paths_.Summary(), summary, 2);
+  WriteJson(paths_.Summary(), Versioned(summary), 2);
 }
 
 }  // namespace splitfusion

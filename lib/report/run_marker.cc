@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 
+#include "splitfusion/lib/base/brief_json.h"
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
@@ -16,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormatVersion = 1;
 constexpr char kTool[] = "sf_run";
 
 /// By RunStatus.
@@ -65,8 +64,9 @@ std::string CheckedPath(const std::string& path) {
 }
 
 RunMarker FromJson(const Json& json) {
-  if (json.at("tool") != kTool || json.at("format_version") != kFormatVersion) {
-    throw InputError("expected format_version 1 of sf_run");
+  if (json.at("tool") != kTool) {
+    throw InputError("field 'tool': " + BriefJson(json.at("tool")) +
+                     ": expected 'sf_run'");
   }
   RunMarker marker;
   marker.id = json.at("id").get<std::string>();
@@ -112,9 +112,9 @@ bool RunMarker::IsSame(const RunIdentity& other) const {
 std::optional<RunMarker> ReadRunMarker(const std::string& folder) {
   const std::string path = RunPaths(folder).Marker();
   if (!fs::exists(path)) return std::nullopt;
-  std::ifstream stream(path);
+  const Json json = ReadVersionedOrNull(path);
   try {
-    return FromJson(Json::parse(stream));
+    return FromJson(json);
   } catch (const Json::exception&) {
     throw InputError(path + ": is damaged: expected the marker of a run");
   } catch (const InputError& error) {

@@ -60,7 +60,9 @@ OwnedFileList WrittenImages(const fs::path& folder) {
 
 Settings ReadSettings(const fs::path& path) {
   try {
-    return ReadJsonOrNull(path.string()).get<Settings>();
+    auto json = ReadVersionedOrNull(path.string());
+    json.erase("format_version");
+    return json.get<Settings>();
   } catch (const nlohmann::json::exception&) {
     throw InputError(path.string() +
                      ": expected the settings of a segmentation, a JSON "
@@ -113,7 +115,7 @@ MaskFolderWriter::MaskFolderWriter(const std::string& folder,
     throw InputError(folder + ": holds png files without " + kSettingsFile +
                      ": expected a new folder, or one of an earlier run");
   }
-  WriteJson(path.string(), nlohmann::json(settings), 1);
+  WriteJson(path.string(), Versioned(nlohmann::json(settings)), 1);
   RepairList();
   FindCompleteFrames();
 }

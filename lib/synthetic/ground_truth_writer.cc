@@ -119,7 +119,10 @@ void GroundTruthWriter::WriteLabels() const {
                          {"moving", instance.moving}});
   }
   WriteJson<nlohmann::json>(directory_ + "/labels.json",
-                            {{"background", 0}, {"instances", instances}}, 1);
+                            {{"format_version", kFormatVersion},
+                             {"background", 0},
+                             {"instances", instances}},
+                            1);
 }
 
 void GroundTruthWriter::WriteTracks() const {
@@ -141,7 +144,8 @@ void GroundTruthWriter::WriteTracks() const {
 void GroundTruthWriter::WriteConfig() const {
   const SyntheticOptions& options = scene_.options();
   WriteJson<nlohmann::json>(directory_ + "/config.json",
-                            {{"scene", ToString(options.scene)},
+                            {{"format_version", kFormatVersion},
+                             {"scene", ToString(options.scene)},
                              {"frames", options.frames},
                              {"width", options.width},
                              {"height", options.height},

@@ -121,7 +121,7 @@ TEST_F(OwnedFilesTest, ABrokenMarkerIsRefused) {
         head + R"([{"path": "x"}]})", std::string(100000, '[')}) {
     refuses(text, "expected a list of the files");
   }
-  refuses(R"({"format_version": 2})", "is of another version than 1");
+  refuses(R"({"format_version": 2})", "field 'format_version': 2: expected");
   refuses(head + R"([{"path": "../x", "bytes": 1}]})", "names '../x'");
   refuses(head + R"([{"path": "/x", "bytes": 1}]})", "names '/x'");
 }
