@@ -1,0 +1,182 @@
+"""Holds what sf_export writes for Blender against the warped meshes of the run.
+
+  blender --background --python tests/blender_check.py -- RUN --glb=FILE
+          [--pc2=FILE --obj=FILE] [--frames=N] [--picture=FILE.png --frame=N]
+
+RUN has warped/FRAME.ply. Imports the glTF file, evaluates its meshes in up to
+--frames of these frames and prints how far vertices are from warped/, in
+millimetres; the same of a point cache (of the surface and frames whose names it
+has, of every frame). A picture is what the imported camera sees. Ends with 1
+where a vertex is farther than 0.1 mm, or none was compared.
+"""
+import argparse
+import json
+import pathlib
+import re
+import sys
+
+import bpy
+import numpy as np
+
+FPS = 30
+FARTHEST = 1e-4  # Metres.
+COLUMNS = {'float': 'f4', 'uchar': 'u1', 'int': 'i4'}
+
+
+def read_vertices(path):
+    """Vertices of a binary PLY as the run writes it."""
+    data = path.read_bytes()
+    end = data.index(b'end_header\n') + len(b'end_header\n')
+    header = data[:end].decode().split('element face')[0]
+    count = int(re.search(r'element vertex (\d+)', header)[1])
+    row = np.dtype([(name, '<' + COLUMNS[kind]) for kind, name in
+                    re.findall(r'property (\w+) (\w+)\n', header)])
+    rows = np.frombuffer(data, row, count, end)
+    return np.stack([rows['x'], rows['y'], rows['z']], 1).astype(float)
+
+
+class Run:
+    """Poses and warped meshes of a run."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        rows = [[float(word) for word in line.split()] for line in
+                (self.folder / 'trajectory.txt').read_text().splitlines()
+                if not line.startswith('#')]
+        frames = [json.loads(line)['frame'] for line in
+                  (self.folder / 'frames.jsonl').read_text().splitlines()]
+        self.start = rows[0][0]
+        self.poses = dict(zip(frames, rows))
+
+    def time(self, frame):
+        return self.poses[frame][0] - self.start
+
+    def warped_frames(self, name):
+        return sorted(int(path.stem) for path in
+                      (self.folder / 'surfaces' / name / 'warped').glob('*.ply'))
+
+    def world_vertices(self, name, frame):
+        _, tx, ty, tz, x, y, z, w = self.poses[frame]
+        turn = np.array([
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+        path = self.folder / 'surfaces' / name / f'warped/{frame:06d}.ply'
+        return read_vertices(path) @ turn.T + [tx, ty, tz]
+
+
+def go_to(time):
+    """To a time in seconds; animations are imported at FPS."""
+    frame = time * FPS
+    bpy.context.scene.frame_set(int(frame), subframe=frame - int(frame))
+
+
+def evaluated(thing):
+    """Vertices as Blender shows them, in the world of the run."""
+    shown = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = shown.to_mesh()
+    flat = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get('co', flat)
+    matrix = np.array(shown.matrix_world)
+    shown.to_mesh_clear()
+    points = flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    # Blender's z is up and its y away; the run's y is down, its z away.
+    return np.stack([points[:, 0], -points[:, 2], points[:, 1]], 1)
+
+
+def surface_name(run, name):
+    """Folder of the surface that a mesh is, or is a part of."""
+    names = [path.name for path in (run.folder / 'surfaces').iterdir()]
+    return max((n for n in names if name.startswith(n)), key=len, default=None)
+
+
+def first_frame(thing):
+    return int(thing['first_frame'])
+
+
+def check_glb(run, path, count):
+    bpy.ops.import_scene.gltf(filepath=path)
+    farthest = {}
+    for thing in [o for o in bpy.data.objects if o.type == 'MESH']:
+        name = surface_name(run, thing.name)
+        if name is None or 'first_vertex' not in thing:
+            continue
+        first = int(thing['first_vertex'])
+        frames = [f for f in run.warped_frames(name)
+                  if first_frame(thing) <= f <= int(thing['last_frame'])]
+        step = max(1, -(-len(frames) // count))
+        for frame in frames[::step]:
+            go_to(run.time(frame))
+            shown = evaluated(thing)
+            true = run.world_vertices(name, frame)[first:first + len(shown)]
+            error = np.linalg.norm(shown - true, axis=1)
+            farthest.setdefault(thing.name, {})[frame] = error.max()
+    return farthest
+
+
+def check_pc2(run, cache, base, count):
+    bpy.ops.wm.obj_import(filepath=base)
+    thing = bpy.context.selected_objects[0]
+    name = re.search(r'_(\d{3}_.*)\.pc2$', cache)[1]
+    first = int(np.frombuffer(pathlib.Path(cache).read_bytes()[20:24], '<f4')[0])
+    modifier = thing.modifiers.new('cache', 'MESH_CACHE')
+    modifier.cache_format = 'PC2'
+    modifier.filepath = cache
+    modifier.frame_start = first
+    farthest = {}
+    frames = run.warped_frames(name)
+    for frame in frames[::max(1, -(-len(frames) // count))]:
+        bpy.context.scene.frame_set(frame)
+        true = run.world_vertices(name, frame)
+        error = np.linalg.norm(evaluated(thing) - true, axis=1)
+        farthest[frame] = error.max()
+    bpy.data.objects.remove(thing)
+    return {pathlib.Path(cache).name: farthest}
+
+
+def render(run, path, frame):
+    scene = bpy.context.scene
+    scene.camera = [o for o in bpy.data.objects if o.type == 'CAMERA'][0]
+    scene.render.engine = 'CYCLES'
+    scene.cycles.samples = 4
+    scene.cycles.use_denoising = False
+    scene.view_settings.view_transform = 'Standard'
+    scene.render.resolution_x, scene.render.resolution_y = 640, 480
+    scene.render.filepath = path
+    go_to(run.time(frame))
+    bpy.ops.render.render(write_still=True)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument('run')
+    for name in ('glb', 'pc2', 'obj', 'picture'):
+        parser.add_argument('--' + name)
+    parser.add_argument('--frames', type=int, default=10)
+    parser.add_argument('--frame', type=int, default=0)
+    options = parser.parse_args(sys.argv[sys.argv.index('--') + 1:])
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.context.scene.render.fps = FPS
+    run = Run(options.run)
+    farthest = {}
+    if options.pc2:
+        farthest.update(
+            check_pc2(run, options.pc2, options.obj, options.frames))
+    if options.glb:
+        farthest.update(check_glb(run, options.glb, options.frames))
+    for name, errors in farthest.items():
+        print(f'{name}: at most {1000 * max(errors.values()):.4f} mm in frames '
+              f'{sorted(errors)}')
+    if options.picture:
+        render(run, options.picture, options.frame)
+    compared = [e for errors in farthest.values() for e in errors.values()]
+    return 0 if compared and max(compared) <= FARTHEST else 1
+
+
+if __name__ == '__main__':
+    try:
+        code = main()
+    except BaseException as error:  # Blender would end with 0.
+        print(f'blender_check: {error!r}', file=sys.stderr)
+        code = 1
+    sys.exit(code)
