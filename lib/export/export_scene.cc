@@ -32,7 +32,8 @@ Absences ReadAbsences(const RunPaths& paths) {
   if (!std::filesystem::exists(paths.Frames())) return absences;
   for (const auto& line : ReadJsonLines(paths.Frames())) {
     try {
-      for (const auto& surface : line.at("surfaces")) {
+      if (!line.contains("surfaces")) continue;
+      for (const auto& surface : line["surfaces"]) {
         if (surface.at("state").get<std::string>() != "inactive") continue;
         absences.emplace(surface.at("id").get<int>(),
                          line.at("frame").get<int>());
