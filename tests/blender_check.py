@@ -1,13 +1,14 @@
 """Holds what sf_export writes for Blender against the warped meshes of the run.
 
   blender --background --python tests/blender_check.py -- RUN --glb=FILE
-          [--pc2=FILE --obj=FILE] [--frames=N] [--picture=FILE.png --frame=N]
+          [--pc2=FILE] [--frames=N] [--picture=FILE.png --frame=N]
 
 RUN has warped/FRAME.ply. Imports the glTF file, evaluates its meshes in up to
 --frames of these frames and prints how far vertices are from warped/, in
-millimetres; the same of a point cache (of the surface and frames whose names it
-has, of every frame). A picture is what the imported camera sees. Ends with 1
-where a vertex is farther than 0.1 mm, or none was compared.
+millimetres; the same of a point cache, with its OBJ beside, where the glTF file
+is of that surface alone. Both are of every frame. A picture is what the imported
+camera sees. Ends with 1 where a vertex is farther than 0.1 mm, or none was
+compared.
 """
 import argparse
 import json
@@ -17,6 +18,10 @@ import sys
 
 import bpy
 import numpy as np
+
+# Debian 12's Blender imports glTF by a name that its NumPy no longer has.
+if 'bool' not in vars(np):
+    np.bool = bool
 
 FPS = 30
 FARTHEST = 1e-4  # Metres.
@@ -33,6 +38,32 @@ def read_vertices(path):
                     re.findall(r'property (\w+) (\w+)\n', header)])
     rows = np.frombuffer(data, row, count, end)
     return np.stack([rows['x'], rows['y'], rows['z']], 1).astype(float)
+
+
+class Glb:
+    """What a glTF file says about the vertices of its meshes."""
+
+    def __init__(self, path):
+        data = pathlib.Path(path).read_bytes()
+        size = int.from_bytes(data[12:16], 'little')
+        self.json = json.loads(data[20:20 + size])
+        self.bytes = data[28 + size:]
+
+    def nodes(self):
+        """Nodes of meshes of which mesh.ply has the vertices in this order."""
+        return {node['name']: node for node in self.json['nodes']
+                if 'mesh' in node and 'first_vertex' in node['extras']}
+
+    def used_vertices(self, name):
+        """Indices in mesh.ply of the vertices that triangles use: Blender
+        leaves the others out."""
+        node = self.nodes()[name]
+        mesh = self.json['meshes'][node['mesh']]
+        accessor = self.json['accessors'][mesh['primitives'][0]['indices']]
+        view = self.json['bufferViews'][accessor['bufferView']]
+        corners = np.frombuffer(self.bytes, '<u4', accessor['count'],
+                                view['byteOffset'])
+        return node['extras']['first_vertex'] + np.unique(corners)
 
 
 class Run:
@@ -87,51 +118,54 @@ def evaluated(thing):
 def surface_name(run, name):
     """Folder of the surface that a mesh is, or is a part of."""
     names = [path.name for path in (run.folder / 'surfaces').iterdir()]
-    return max((n for n in names if name.startswith(n)), key=len, default=None)
+    return max((n for n in names if name.startswith(n)), key=len)
 
 
-def first_frame(thing):
-    return int(thing['first_frame'])
+def spread(frames, count):
+    return frames[::max(1, -(-len(frames) // count))]
 
 
 def check_glb(run, path, count):
     bpy.ops.import_scene.gltf(filepath=path)
+    glb = Glb(path)
     farthest = {}
-    for thing in [o for o in bpy.data.objects if o.type == 'MESH']:
-        name = surface_name(run, thing.name)
-        if name is None or 'first_vertex' not in thing:
-            continue
-        first = int(thing['first_vertex'])
-        frames = [f for f in run.warped_frames(name)
-                  if first_frame(thing) <= f <= int(thing['last_frame'])]
-        step = max(1, -(-len(frames) // count))
-        for frame in frames[::step]:
+    for name, node in glb.nodes().items():
+        surface = surface_name(run, name)
+        extras = node['extras']
+        used = glb.used_vertices(name)
+        frames = [f for f in run.warped_frames(surface)
+                  if extras['first_frame'] <= f <= extras['last_frame']]
+        for frame in spread(frames, count):
             go_to(run.time(frame))
-            shown = evaluated(thing)
-            true = run.world_vertices(name, frame)[first:first + len(shown)]
-            error = np.linalg.norm(shown - true, axis=1)
-            farthest.setdefault(thing.name, {})[frame] = error.max()
+            true = run.world_vertices(surface, frame)[used]
+            error = np.linalg.norm(evaluated(bpy.data.objects[name]) - true,
+                                   axis=1)
+            farthest.setdefault(name, {})[frame] = error.max()
     return farthest
 
 
-def check_pc2(run, cache, base, count):
-    bpy.ops.wm.obj_import(filepath=base)
+def check_pc2(run, path, glb_path, cache, count):
+    """A cache and the mesh beside it, of the one mesh of a glTF file."""
+    bpy.ops.wm.obj_import(filepath=str(path))
     thing = bpy.context.selected_objects[0]
-    name = re.search(r'_(\d{3}_.*)\.pc2$', cache)[1]
-    first = int(np.frombuffer(pathlib.Path(cache).read_bytes()[20:24], '<f4')[0])
+    (name, node), = Glb(glb_path).nodes().items()
+    start, _, samples = np.frombuffer(cache.read_bytes()[20:32], '<f4,<f4,<i4')[0]
     modifier = thing.modifiers.new('cache', 'MESH_CACHE')
     modifier.cache_format = 'PC2'
-    modifier.filepath = cache
-    modifier.frame_start = first
+    modifier.filepath = str(cache)
+    modifier.frame_start = start
     farthest = {}
-    frames = run.warped_frames(name)
-    for frame in frames[::max(1, -(-len(frames) // count))]:
+    surface = surface_name(run, name)
+    frames = [f for f in run.warped_frames(surface)
+              if start <= f < start + samples]
+    for frame in spread(frames, count):
         bpy.context.scene.frame_set(frame)
-        true = run.world_vertices(name, frame)
-        error = np.linalg.norm(evaluated(thing) - true, axis=1)
-        farthest[frame] = error.max()
+        shown = evaluated(thing)
+        first = node['extras']['first_vertex']
+        true = run.world_vertices(surface, frame)[first:first + len(shown)]
+        farthest[frame] = np.linalg.norm(shown - true, axis=1).max()
     bpy.data.objects.remove(thing)
-    return {pathlib.Path(cache).name: farthest}
+    return {cache.name: farthest}
 
 
 def render(run, path, frame):
@@ -150,7 +184,7 @@ def render(run, path, frame):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('run')
-    for name in ('glb', 'pc2', 'obj', 'picture'):
+    for name in ('glb', 'pc2', 'picture'):
         parser.add_argument('--' + name)
     parser.add_argument('--frames', type=int, default=10)
     parser.add_argument('--frame', type=int, default=0)
@@ -160,10 +194,10 @@ def main():
     run = Run(options.run)
     farthest = {}
     if options.pc2:
-        farthest.update(
-            check_pc2(run, options.pc2, options.obj, options.frames))
-    if options.glb:
-        farthest.update(check_glb(run, options.glb, options.frames))
+        cache = pathlib.Path(options.pc2)
+        farthest.update(check_pc2(run, cache.with_suffix('.obj'), options.glb,
+                                  cache, options.frames))
+    farthest.update(check_glb(run, options.glb, options.frames))
     for name, errors in farthest.items():
         print(f'{name}: at most {1000 * max(errors.values()):.4f} mm in frames '
               f'{sorted(errors)}')

@@ -40,6 +40,9 @@ class GltfWriter {
   int AddMesh(const ExportSurface& surface, Json primitive);
   /// Nodes of the graph; returns the indices of glTF.
   std::vector<int> AddJoints(const ExportSurface& surface, int times);
+  /// The joint above them, and above that the node of the scene.
+  int AddRootJoint(const ExportSurface& surface,
+                   const std::vector<int>& joints);
   int AddSkin(const ExportSurface& surface, const std::vector<int>& joints);
   int AddTimesOf(const ExportSurface& surface);
   Json ExtrasOf(const ExportSurface& surface) const;
@@ -190,10 +193,24 @@ std::vector<int> GltfWriter::AddJoints(const ExportSurface& surface,
   return joints;
 }
 
+int GltfWriter::AddRootJoint(const ExportSurface& surface,
+                             const std::vector<int>& joints) {
+  const int root = file_.Append(
+      "nodes", {{"name", surface.name + "_nodes"}, {"children", joints}});
+  AddRoot({{"name", surface.name + "_graph"}, {"children", {root}}});
+  animation_.ShowWithin(root, surface.moments);
+  return root;
+}
+
 int GltfWriter::AddSkin(const ExportSurface& surface,
                         const std::vector<int>& joints) {
+  // The root is the last. It carries no vertex, but Blender takes the rest pose
+  // of a bone from these matrices only if its parent has one, too; else it
+  // blends vertices twice.
+  std::vector<Eigen::Vector3d> places = surface.graph.positions;
+  places.push_back(Eigen::Vector3d::Zero());
   std::vector<float> inverse_binds;
-  for (const Eigen::Vector3d& g : surface.graph.positions) {
+  for (const Eigen::Vector3d& g : places) {
     Eigen::Matrix4f matrix = Eigen::Matrix4f::Identity();
     matrix.topRightCorner<3, 1>() = -g.cast<float>();
     inverse_binds.insert(inverse_binds.end(), matrix.data(),
@@ -206,20 +223,18 @@ int GltfWriter::AddSkin(const ExportSurface& surface,
 }
 
 void GltfWriter::AddSkinned(const ExportSurface& surface) {
-  if (surface.graph.size() > std::numeric_limits<std::uint16_t>::max()) {
+  if (surface.graph.size() >= std::numeric_limits<std::uint16_t>::max()) {
     throw InputError(surface.name + ": " +
                      std::to_string(surface.graph.size()) +
-                     " nodes: expected at most 65535 for glTF, or --bake");
+                     " nodes: expected at most 65534 for glTF, or --bake");
   }
   const std::vector<Skinning> skinning =
       HeaviestFirst(surface.skinning, options_.influences);
   error_ += ErrorOf(surface, skinning);
   Json primitive = AddPrimitive(surface.mesh, &file_);
   AddSkinning(skinning, &file_, &primitive);
-  const std::vector<int> joints = AddJoints(surface, AddTimesOf(surface));
-  const int graph =
-      AddRoot({{"name", surface.name + "_graph"}, {"children", joints}});
-  animation_.ShowWithin(graph, surface.moments);
+  std::vector<int> joints = AddJoints(surface, AddTimesOf(surface));
+  joints.push_back(AddRootJoint(surface, joints));
   AddRoot({{"name", surface.name},
            {"mesh", AddMesh(surface, std::move(primitive))},
            {"skin", AddSkin(surface, joints)},

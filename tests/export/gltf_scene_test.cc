@@ -79,8 +79,8 @@ TEST_F(GltfSceneTest, WhatIsNotThereIsScaledToZero) {
   for (int frame = 0; frame < 12; ++frame) {
     const bool first = frame >= 1 && frame < 6;
     const bool second = frame >= 6 && frame != 8;
-    EXPECT_NEAR(Scale(file, "001_thin_plate_1_graph", frame), first, 1e-9);
-    EXPECT_NEAR(Scale(file, "001_thin_plate_2_graph", frame), second, 1e-9);
+    EXPECT_NEAR(Scale(file, "001_thin_plate_1_nodes", frame), first, 1e-9);
+    EXPECT_NEAR(Scale(file, "001_thin_plate_2_nodes", frame), second, 1e-9);
     EXPECT_NEAR(Scale(file, "002_ball", frame), frame >= 4 && frame <= 8, 1e-6);
     EXPECT_NEAR(Scale(file, "000_background", frame), 1, 1e-9);
   }

@@ -282,7 +282,7 @@ TEST_F(SfExport, BlenderShowsItWhereTheRunHasIt) {
                               script.string() + " -- " + (folder_ / "run") +
                               " --glb=" + (folder_ / "scene.glb") +
                               " --pc2=" + (folder_ / "scene_001_person.pc2") +
-                              " --obj=" + (folder_ / "scene_001_person.obj") +
+
                               " >" + (folder_ / "blender.txt") + " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << folder_.Read("blender.txt");
   EXPECT_THAT(folder_.Read("blender.txt"),
