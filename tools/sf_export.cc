@@ -28,7 +28,9 @@ DEFINE_int32(every, 1, "Every n-th frame.");
 DEFINE_string(space, "world",
               "world, or camera: in every frame that of the camera, as in "
               "warped/.");
-DEFINE_bool(refuted, false, "Also parts of surfaces that were refuted.");
+DEFINE_bool(refuted, true,
+            "Also parts of surfaces that were refuted later, while they were "
+            "in use.");
 DEFINE_bool(cut_stretched, true,
             "Without triangles that are stretched in some frame.");
 DEFINE_bool(grow, false,

@@ -22,8 +22,8 @@ struct ExportOptions {
   /// Right-handed with y up and z towards the viewer, as computer graphics has
   /// it; else x right, y down, z forward, as the run's files.
   bool y_up = false;
-  /// Also parts of models that were refuted.
-  bool refuted = false;
+  /// Also parts of models that were refuted, as long as they were in use.
+  bool refuted = true;
   /// Without triangles that are stretched in any frame.
   bool cut_stretched = true;
 

@@ -101,6 +101,7 @@ TEST_F(ExportSceneTest, ModelsAndRefutedPartsAreApart) {
 TEST_F(ExportSceneTest, TakesEveryNthFrameAndSomeSurfaces) {
   JoinedRun().Write(folder_ / "run");
   options_.every = 5;
+  options_.refuted = false;
   options_.surfaces = {2, 1};
   const ExportScene scene = ReadExportScene(folder_ / "run", options_);
   EXPECT_EQ(scene.frames.size(), 3u);

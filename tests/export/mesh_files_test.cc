@@ -74,6 +74,7 @@ TEST(WritePointCaches, HaveEveryFrameFromFirstToLast) {
   JoinedRun().Write(folder / "run");
   ExportOptions options;
   options.y_up = true;
+  options.refuted = false;
   const ExportScene scene = ReadExportScene(folder / "run", options);
   EXPECT_THAT(
       WritePointCaches(folder / "x", scene),
