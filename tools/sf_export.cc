@@ -7,10 +7,12 @@
 #include <iostream>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/pending_folder.h"
+#include "splitfusion/lib/export/appearance.h"
 #include "splitfusion/lib/export/export_scene.h"
 #include "splitfusion/lib/export/gltf_scene.h"
 #include "splitfusion/lib/export/mesh_sequence.h"
@@ -33,8 +35,11 @@ DEFINE_bool(refuted, true,
             "in use.");
 DEFINE_bool(cut_stretched, true,
             "Without triangles that are stretched in some frame.");
-DEFINE_bool(grow, false,
-            "ply, obj: triangles of what had been seen by the frame alone.");
+DEFINE_int32(
+    grow, 10,
+    "glb: what was seen later appears when it was seen, in steps of so "
+    "many frames; ply, obj: triangles of what had been seen by the "
+    "frame alone; 0: the whole mesh in all frames.");
 DEFINE_int32(influences, 8, "glb: most nodes that carry a vertex, 4 or 8.");
 DEFINE_bool(bake, false,
             "glb: a shape for every frame (morph targets), no joints.");
@@ -99,6 +104,7 @@ std::vector<int> SurfaceIds() {
 ExportOptions Options(const std::string& kind) {
   CheckOption(FLAGS_space == "world" || FLAGS_space == "camera", "space",
               "'" + FLAGS_space + "'", "world or camera");
+  CheckOption(FLAGS_grow >= 0, "grow", FLAGS_grow, ">= 0");
   ExportOptions options;
   options.every = FLAGS_every;
   options.surfaces = SurfaceIds();
@@ -118,7 +124,20 @@ void SayWhatIsLeftOut(const ExportScene& scene) {
   }
 }
 
-void ExportGlb(const ExportScene& scene, const GltfOptions& options) {
+/// Cuts the surfaces of a scene into pieces that appear one after another.
+void LetGrow(ExportScene* scene) {
+  std::vector<ExportSurface> pieces;
+  for (ExportSurface& surface : scene->surfaces) {
+    for (ExportSurface& piece : SplitByAppearance(surface, FLAGS_grow)) {
+      pieces.push_back(std::move(piece));
+    }
+    surface = {};  // Its motions take much memory.
+  }
+  scene->surfaces = std::move(pieces);
+}
+
+void ExportGlb(ExportScene scene, const GltfOptions& options) {
+  if (FLAGS_grow > 0) LetGrow(&scene);
   const InfluenceError error = WriteGltf(FLAGS_output, scene, options);
   if (options.bake || options.influences == 8) return;
   std::printf(
@@ -131,19 +150,19 @@ void ExportGlb(const ExportScene& scene, const GltfOptions& options) {
 void ExportSequence(const ExportScene& scene, MeshFileKind kind) {
   PendingFolder folder(FLAGS_output, "sf_export", FLAGS_overwrite);
   const int files =
-      WriteMeshSequence(folder.path().string(), scene, kind, FLAGS_grow);
+      WriteMeshSequence(folder.path().string(), scene, kind, FLAGS_grow > 0);
   folder.Commit();
   std::cout << FLAGS_output << ": " << files << " files\n";
 }
 
 void Export(const std::string& kind, const std::string& run,
             const GltfOptions& gltf) {
-  const ExportScene scene = ReadExportScene(run, Options(kind));
+  ExportScene scene = ReadExportScene(run, Options(kind));
   if (kind == "tum") return WriteTumPoses(FLAGS_output, scene);
   if (kind == "kitti") return WriteKittiPoses(FLAGS_output, scene);
   SayWhatIsLeftOut(scene);
   if (kind == "npz") return WriteRunArrays(FLAGS_output, scene);
-  if (kind == "glb") return ExportGlb(scene, gltf);
+  if (kind == "glb") return ExportGlb(std::move(scene), gltf);
   if (kind == "pc2") {
     std::filesystem::path stem(FLAGS_output);
     if (stem.extension() == ".pc2") stem.replace_extension();

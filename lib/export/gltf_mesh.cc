@@ -122,6 +122,13 @@ void AddSkinning(const std::vector<Skinning>& skinning, GlbFile* file,
   }
 }
 
+void AddSource(const std::vector<int>& source, GlbFile* file, Json* primitive) {
+  // glTF has no larger integers for vertices; floats are exact up to 2^24.
+  const std::vector<float> indices(source.begin(), source.end());
+  (*primitive)["attributes"]["_VERTEX"] =
+      file->Add(indices, {"SCALAR", kVertexTarget});
+}
+
 void AddTarget(const TriangleMesh& base, const TriangleMesh& mesh,
                GlbFile* file, Json* primitive) {
   const GlbArrayKind bounded = {"VEC3", kVertexTarget, false, true};

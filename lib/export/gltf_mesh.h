@@ -21,6 +21,11 @@ nlohmann::ordered_json AddPrimitive(const TriangleMesh& mesh, GlbFile* file);
 void AddSkinning(const std::vector<Skinning>& skinning, GlbFile* file,
                  nlohmann::ordered_json* primitive);
 
+/// Gives the vertices of a primitive their indices in mesh.ply, as the
+/// attribute `_VERTEX`.
+void AddSource(const std::vector<int>& source, GlbFile* file,
+               nlohmann::ordered_json* primitive);
+
 /// Gives a primitive a shape to morph to: differences of `mesh` from `base`.
 void AddTarget(const TriangleMesh& base, const TriangleMesh& mesh,
                GlbFile* file, nlohmann::ordered_json* primitive);

@@ -125,20 +125,15 @@ void GltfWriter::AddSurface(const ExportSurface& surface) {
 }
 
 Json GltfWriter::ExtrasOf(const ExportSurface& surface) const {
-  Json extras = {{"surface", surface.id},
-                 {"label", surface.label},
-                 {"first_frame", surface.moments.front().frame},
-                 {"last_frame", surface.moments.back().frame},
-                 {"stretched_triangles", surface.stretched_triangles}};
-  const int first = surface.source.front();
-  const auto count = static_cast<int>(surface.source.size());
-  if (surface.source.back() - first == count - 1) {
-    extras["first_vertex"] = first;  // Of mesh.ply; they follow one another.
-  }
-  return extras;
+  return {{"surface", surface.id},
+          {"label", surface.label},
+          {"first_frame", surface.moments.front().frame},
+          {"last_frame", surface.moments.back().frame},
+          {"stretched_triangles", surface.stretched_triangles}};
 }
 
 int GltfWriter::AddMesh(const ExportSurface& surface, Json primitive) {
+  AddSource(surface.source, &file_, &primitive);
   Json mesh = {{"name", surface.name}, {"primitives", Json::array()}};
   mesh["primitives"].push_back(std::move(primitive));
   return file_.Append("meshes", std::move(mesh));
