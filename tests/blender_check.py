@@ -1,14 +1,13 @@
 """Holds what sf_export writes for Blender against the warped meshes of the run.
 
-  blender --background --python tests/blender_check.py -- RUN --glb=FILE
+  blender --background --python tests/blender_check.py -- RUN [--glb=FILE]
           [--pc2=FILE] [--frames=N] [--picture=FILE.png --frame=N]
 
 RUN has warped/FRAME.ply. Imports the glTF file, evaluates its meshes in up to
 --frames of these frames and prints how far vertices are from warped/, in
-millimetres; the same of a point cache, with its OBJ beside, where the glTF file
-is of that surface alone. Both are of every frame. A picture is what the imported
-camera sees. Ends with 1 where a vertex is farther than 0.1 mm, or none was
-compared.
+millimetres; the same of a point cache, with its OBJ beside it. Both are in the
+world, of every frame. A picture is what the imported camera sees. Ends with 1
+where a vertex is farther than 0.1 mm, or none was compared.
 """
 import argparse
 import json
@@ -50,20 +49,24 @@ class Glb:
         self.bytes = data[28 + size:]
 
     def nodes(self):
-        """Nodes of meshes of which mesh.ply has the vertices in this order."""
+        """Nodes of meshes, by name."""
         return {node['name']: node for node in self.json['nodes']
-                if 'mesh' in node and 'first_vertex' in node['extras']}
+                if 'mesh' in node}
 
-    def used_vertices(self, name):
+    def array(self, accessor, kind):
+        accessor = self.json['accessors'][accessor]
+        view = self.json['bufferViews'][accessor['bufferView']]
+        return np.frombuffer(self.bytes, kind, accessor['count'],
+                             view['byteOffset'])
+
+    def sources(self, name):
         """Indices in mesh.ply of the vertices that triangles use: Blender
         leaves the others out."""
-        node = self.nodes()[name]
-        mesh = self.json['meshes'][node['mesh']]
-        accessor = self.json['accessors'][mesh['primitives'][0]['indices']]
-        view = self.json['bufferViews'][accessor['bufferView']]
-        corners = np.frombuffer(self.bytes, '<u4', accessor['count'],
-                                view['byteOffset'])
-        return node['extras']['first_vertex'] + np.unique(corners)
+        mesh = self.json['meshes'][self.nodes()[name]['mesh']]
+        primitive = mesh['primitives'][0]
+        sources = self.array(primitive['attributes']['_VERTEX'], '<f4')
+        used = np.unique(self.array(primitive['indices'], '<u4'))
+        return sources[used].astype(int)
 
 
 class Run:
@@ -89,9 +92,12 @@ class Run:
     def world_vertices(self, name, frame):
         _, tx, ty, tz, x, y, z, w = self.poses[frame]
         turn = np.array([
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+            [w * w + x * x - y * y - z * z, 2 * (x * y - z * w),
+             2 * (x * z + y * w)],
+            [2 * (x * y + z * w), w * w - x * x + y * y - z * z,
+             2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w),
+             w * w - x * x - y * y + z * z]])
         path = self.folder / 'surfaces' / name / f'warped/{frame:06d}.ply'
         return read_vertices(path) @ turn.T + [tx, ty, tz]
 
@@ -132,37 +138,37 @@ def check_glb(run, path, count):
     for name, node in glb.nodes().items():
         surface = surface_name(run, name)
         extras = node['extras']
-        used = glb.used_vertices(name)
+        sources = glb.sources(name)
         frames = [f for f in run.warped_frames(surface)
                   if extras['first_frame'] <= f <= extras['last_frame']]
         for frame in spread(frames, count):
             go_to(run.time(frame))
-            true = run.world_vertices(surface, frame)[used]
+            true = run.world_vertices(surface, frame)[sources]
             error = np.linalg.norm(evaluated(bpy.data.objects[name]) - true,
                                    axis=1)
             farthest.setdefault(name, {})[frame] = error.max()
     return farthest
 
 
-def check_pc2(run, path, glb_path, cache, count):
-    """A cache and the mesh beside it, of the one mesh of a glTF file."""
-    bpy.ops.wm.obj_import(filepath=str(path))
+def check_pc2(run, cache, count):
+    """A cache of the whole surface NNN_LABEL, STEM_NNN_LABEL.pc2."""
+    bpy.ops.wm.obj_import(filepath=str(cache.with_suffix('.obj')))
     thing = bpy.context.selected_objects[0]
-    (name, node), = Glb(glb_path).nodes().items()
-    start, _, samples = np.frombuffer(cache.read_bytes()[20:32], '<f4,<f4,<i4')[0]
+    surface = re.search(r'\d{3}_.*', cache.stem)[0]
+    head = np.frombuffer(cache.read_bytes()[:32], '<f4,<f4,<i4', 1, 20)[0]
+    start, samples = int(head[0]), int(head[2])
     modifier = thing.modifiers.new('cache', 'MESH_CACHE')
     modifier.cache_format = 'PC2'
     modifier.filepath = str(cache)
     modifier.frame_start = start
     farthest = {}
-    surface = surface_name(run, name)
     frames = [f for f in run.warped_frames(surface)
               if start <= f < start + samples]
     for frame in spread(frames, count):
         bpy.context.scene.frame_set(frame)
         shown = evaluated(thing)
-        first = node['extras']['first_vertex']
-        true = run.world_vertices(surface, frame)[first:first + len(shown)]
+        # Parts that were refuted come first.
+        true = run.world_vertices(surface, frame)[-len(shown):]
         farthest[frame] = np.linalg.norm(shown - true, axis=1).max()
     bpy.data.objects.remove(thing)
     return {cache.name: farthest}
@@ -194,10 +200,10 @@ def main():
     run = Run(options.run)
     farthest = {}
     if options.pc2:
-        cache = pathlib.Path(options.pc2)
-        farthest.update(check_pc2(run, cache.with_suffix('.obj'), options.glb,
-                                  cache, options.frames))
-    farthest.update(check_glb(run, options.glb, options.frames))
+        farthest.update(
+            check_pc2(run, pathlib.Path(options.pc2), options.frames))
+    if options.glb:
+        farthest.update(check_glb(run, options.glb, options.frames))
     for name, errors in farthest.items():
         print(f'{name}: at most {1000 * max(errors.values()):.4f} mm in frames '
               f'{sorted(errors)}')

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/export/appearance.h"
 #include "splitfusion/lib/export/influences.h"
 #include "support/expect_input_error.h"
 #include "support/joined_run.h"
@@ -130,6 +133,58 @@ TEST_F(ExportSceneTest, LeavesStretchedTrianglesOut) {
   EXPECT_EQ(whole.surfaces[1].stretched_triangles, 0);
   EXPECT_EQ(whole.surfaces[1].mesh.triangles.size(),
             cut.mesh.triangles.size() + cut.stretched_triangles);
+}
+
+/// Area of the triangles that are shown in a frame, canonical, square metres.
+double AreaShown(const std::vector<ExportSurface>& pieces, int frame) {
+  double area = 0;
+  for (const ExportSurface& piece : pieces) {
+    for (const ExportMoment& moment : piece.moments) {
+      if (moment.frame != frame) continue;
+      for (const Eigen::Vector3i& t : piece.mesh.triangles) {
+        const auto& p = piece.mesh.vertices;
+        area += (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).norm() / 2;
+      }
+    }
+  }
+  return area;
+}
+
+TEST_F(ExportSceneTest, WhatWasSeenLaterAppearsThen) {
+  plate_.WriteRun(folder_ / "run");
+  const std::string file = folder_ / "run/surfaces/001_thin_plate/graph.json";
+  int neighbors = 0;
+  DeformationGraph graph = ReadGraph(file, &neighbors);
+  // The right half was seen in frame 5 at first.
+  graph.node_spacing = 0.01;
+  for (const Eigen::Vector3d& g : graph.positions) {
+    graph.first_seen.push_back(g.x() > 0.01 ? 5 : 0);
+  }
+  WriteGraph(file, graph, neighbors);
+  const ExportScene scene = ReadExportScene(folder_ / "run", options_);
+  const ExportSurface& whole = scene.surfaces[1];
+  const std::vector<ExportSurface> exact = SplitByAppearance(whole, 1);
+  ASSERT_EQ(exact.size(), 2u);
+  EXPECT_EQ(exact[1].name, "001_thin_plate_from_000005");
+  EXPECT_EQ(FramesWith(exact[1]).front(), 5);
+  EXPECT_EQ(FramesWith(exact[0]).size(), 12u);
+  const double area = AreaShown({whole}, 0);
+  EXPECT_NEAR(AreaShown(exact, 4), area / 2, area / 8);
+  EXPECT_NEAR(AreaShown(exact, 5), area, 1e-6);
+  EXPECT_LT(exact[0].graph.size(), whole.graph.size());
+  for (const ExportSurface& piece : exact) {
+    const TriangleMesh mesh = piece.At(piece.moments.back());
+    const TriangleMesh all = whole.At(whole.moments.back());
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+      EXPECT_LT((mesh.vertices[i] - all.vertices[piece.source[i]]).norm(),
+                1e-6);
+    }
+  }
+  const std::vector<ExportSurface> coarse = SplitByAppearance(whole, 4);
+  ASSERT_EQ(coarse.size(), 2u);
+  EXPECT_EQ(FramesWith(coarse[1]).front(), 8);
+  EXPECT_EQ(FramesWith(SplitByAppearance(whole, 100)[1]).front(), 11);
+  EXPECT_EQ(SplitByAppearance(scene.surfaces[0], 1).size(), 1u);
 }
 
 TEST_F(ExportSceneTest, HeaviestInfluencesComeFirstAndSumToOne) {

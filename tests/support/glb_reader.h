@@ -30,6 +30,8 @@ class GlbReader {
   std::vector<Eigen::Vector3d> NormalsAt(int node, double time) const;
   /// Colours of the vertices, sRGB, 0..255.
   std::vector<Eigen::Vector3d> Colors(int node) const;
+  /// Of every vertex its index in mesh.ply.
+  std::vector<double> Source(int node) const;
   /// Corners of the triangles.
   std::vector<double> Indices(int node) const;
 
