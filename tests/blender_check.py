@@ -86,8 +86,8 @@ class Run:
         return self.poses[frame][0] - self.start
 
     def warped_frames(self, name):
-        return sorted(int(path.stem) for path in
-                      (self.folder / 'surfaces' / name / 'warped').glob('*.ply'))
+        warped = self.folder / 'surfaces' / name / 'warped'
+        return sorted(int(path.stem) for path in warped.glob('*.ply'))
 
     def world_vertices(self, name, frame):
         _, tx, ty, tz, x, y, z, w = self.poses[frame]
