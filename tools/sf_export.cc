@@ -111,7 +111,8 @@ ExportOptions Options(const std::string& kind) {
   options.in_world = FLAGS_space == "world";
   options.y_up = kind == "glb" || kind == "pc2" || kind == "obj";
   options.refuted = FLAGS_refuted;
-  options.cut_stretched = FLAGS_cut_stretched;
+  const bool poses = kind == "tum" || kind == "kitti";
+  options.cut_stretched = FLAGS_cut_stretched && !poses;
   return options;
 }
 
@@ -147,6 +148,17 @@ void ExportGlb(ExportScene scene, const GltfOptions& options) {
   std::fflush(stdout);
 }
 
+void ExportCaches(const ExportScene& scene) {
+  std::filesystem::path stem(FLAGS_output);
+  if (stem.extension() == ".pc2") stem.replace_extension();
+  for (const auto& files : WritePointCaches(stem.string(), scene)) {
+    std::cout << files.mesh << '\n';
+    if (files.cache.empty()) continue;
+    std::cout << files.cache << ": " << files.frames << " frames, Frame Start "
+              << files.start << '\n';
+  }
+}
+
 void ExportSequence(const ExportScene& scene, MeshFileKind kind) {
   PendingFolder folder(FLAGS_output, "sf_export", FLAGS_overwrite);
   const int files =
@@ -163,14 +175,7 @@ void Export(const std::string& kind, const std::string& run,
   SayWhatIsLeftOut(scene);
   if (kind == "npz") return WriteRunArrays(FLAGS_output, scene);
   if (kind == "glb") return ExportGlb(std::move(scene), gltf);
-  if (kind == "pc2") {
-    std::filesystem::path stem(FLAGS_output);
-    if (stem.extension() == ".pc2") stem.replace_extension();
-    for (const auto& file : WritePointCaches(stem.string(), scene)) {
-      std::cout << file << '\n';
-    }
-    return;
-  }
+  if (kind == "pc2") return ExportCaches(scene);
   ExportSequence(scene, SequenceKinds().at(kind));
 }
 

@@ -13,22 +13,20 @@ void WriteValue(const T& value, std::ostream* out) {
   out->write(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-void WriteCache(const std::string& path, const ExportSurface& surface) {
+void WriteCache(const PointCacheFiles& files, const ExportSurface& surface) {
   constexpr char kMagic[] = "POINTCACHE2";  // With the zero at its end.
   const std::vector<ExportMoment>& moments = surface.moments;
-  const std::size_t first = moments.front().place;
-  const std::size_t samples = moments.back().place - first + 1;
-  WriteFileAtomically(path, [&](std::ostream& out) {
+  WriteFileAtomically(files.cache, [&](std::ostream& out) {
     out.write(kMagic, sizeof(kMagic));
     WriteValue(std::int32_t{1}, &out);  // Version.
     WriteValue(static_cast<std::int32_t>(surface.mesh.vertices.size()), &out);
-    WriteValue(static_cast<float>(first), &out);
+    WriteValue(static_cast<float>(files.start), &out);
     WriteValue(1.0f, &out);  // Frames of the export a sample.
-    WriteValue(static_cast<std::int32_t>(samples), &out);
+    WriteValue(static_cast<std::int32_t>(files.frames), &out);
     std::size_t next = 0;
     std::vector<Eigen::Vector3f> points;
-    for (std::size_t place = first; place < first + samples; ++place) {
-      if (moments[next].place == place) {
+    for (std::size_t i = 0; i < files.frames; ++i) {
+      if (moments[next].place == files.start + i) {
         points = surface.VerticesAt(moments[next++], surface.skinning);
       }
       out.write(
@@ -40,18 +38,22 @@ void WriteCache(const std::string& path, const ExportSurface& surface) {
 
 }  // namespace
 
-std::vector<std::string> WritePointCaches(const std::string& stem,
-                                          const ExportScene& scene) {
-  std::vector<std::string> files;
+std::vector<PointCacheFiles> WritePointCaches(const std::string& stem,
+                                              const ExportScene& scene) {
+  std::vector<PointCacheFiles> written;
   for (const ExportSurface& surface : scene.surfaces) {
     const std::string path = stem + "_" + surface.name;
-    WriteObj(path + ".obj", surface.At(surface.moments.front()));
-    files.push_back(path + ".obj");
-    if (surface.IsStill(scene.frames.size())) continue;
-    WriteCache(path + ".pc2", surface);
-    files.push_back(path + ".pc2");
+    const std::size_t first = surface.moments.front().place;
+    const std::size_t last = surface.moments.back().place;
+    PointCacheFiles files{path + ".obj", "", first, last - first + 1};
+    WriteObj(files.mesh, surface.At(surface.moments.front()));
+    if (!surface.IsStill(scene.frames.size())) {
+      files.cache = path + ".pc2";
+      WriteCache(files, surface);
+    }
+    written.push_back(files);
   }
-  return files;
+  return written;
 }
 
 }  // namespace splitfusion
