@@ -84,6 +84,7 @@ TEST_F(ExportSceneTest, CarriesSurfacesIntoTheWorld) {
 
 TEST_F(ExportSceneTest, ModelsAndRefutedPartsAreApart) {
   JoinedRun().Write(folder_ / "run");
+  options_.refuted = false;
   const ExportScene scene = ReadExportScene(folder_ / "run", options_);
   EXPECT_THAT(NamesOf(scene), ElementsAre("000_background", "001_thin_plate_1",
                                           "001_thin_plate_2", "002_ball"));
