@@ -13,6 +13,7 @@
 #include "sf_run_fixture.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "splitfusion/lib/sequence/trajectory.h"
+#include "support/bent_plate.h"
 #include "support/expect_refused.h"
 #include "support/glb_reader.h"
 #include "support/repository.h"
@@ -76,7 +77,8 @@ class SfExport : public SfRun {
 
   /// Farthest distance of one of them from the warped mesh of a frame, as the
   /// camera of the file sees it; checks normals and colours, too.
-  double FarthestOf(const GlbReader& file, int node, int frame) const {
+  double FarthestOf(const GlbReader& file, int node, int frame,
+                    double most_turned) const {
     const TriangleMesh warped = Warped(frame);
     const double time = TimeOf(frame);
     const Eigen::Matrix4d camera_from_world =
@@ -104,18 +106,19 @@ class SfExport : public SfRun {
         EXPECT_NEAR(colors[i][c], warped.colors[k][c], 0.5);
       }
     }
-    EXPECT_LT(turned, 0.02) << "frame " << frame;
+    EXPECT_LT(turned, most_turned) << "frame " << frame;
     return farthest;
   }
 
-  /// That of all of them, in three frames.
-  double Farthest(const GlbReader& file) const {
+  /// That of all of them, in three frames. `most_turned`: of normals, radians.
+  double Farthest(const GlbReader& file, double most_turned = 0.02) const {
     double farthest = 0;
     for (const int frame : {0, 2, 4}) {
       const std::vector<int> nodes = MeshesIn(file, frame);
       EXPECT_FALSE(nodes.empty());
       for (const int node : nodes) {
-        farthest = std::max(farthest, FarthestOf(file, node, frame));
+        farthest =
+            std::max(farthest, FarthestOf(file, node, frame, most_turned));
       }
     }
     return farthest;
@@ -132,11 +135,7 @@ TEST_F(SfExport, JointsCarryVerticesToWhereTheRunHasThem) {
   EXPECT_GE(file.Node("001_person_node_0"), 0);
   EXPECT_EQ(Export("again.glb").exit_code, 0);
   EXPECT_EQ(folder_.Read("scene.glb"), folder_.Read("again.glb"));
-}
-
-TEST_F(SfExport, TheRoomStandsStill) {
-  ASSERT_EQ(Export("scene.glb").exit_code, 0);
-  const GlbReader file(folder_ / "scene.glb");
+  // The room stands still.
   const TriangleMesh room =
       ReadPly(folder_ / "run/surfaces/000_background/mesh.ply");
   const auto vertices = file.VerticesAt(file.Node("000_background"), 0.2);
@@ -161,7 +160,7 @@ TEST_F(SfExport, FourInfluencesAreAsFarOffAsItSays) {
   const double largest = std::stod(stated[1]) / 1000;
   EXPECT_GT(largest, 0);
   const GlbReader file(folder_ / "scene.glb");
-  const double farthest = Farthest(file);
+  const double farthest = Farthest(file, /*most_turned=*/0.3);
   EXPECT_GT(farthest, 0);
   EXPECT_LT(farthest, largest + kTenthOfAMillimetre);
   EXPECT_NEAR(
@@ -202,6 +201,19 @@ TEST_F(SfExport, TheSequenceOfFilesIsAsWarpedMeshesAre) {
   EXPECT_FALSE(folder_.Has("meshes/000_background/000004.pcd"))
       << "it stands still";
   EXPECT_FALSE(folder_.Has("meshes/001_person/000002.ply"));
+  // Poses of the camera are those of the run.
+  ASSERT_EQ(Export("poses.txt", "--as=tum").exit_code, 0);
+  EXPECT_EQ(folder_.Read("poses.txt"), folder_.Read("run/trajectory.txt"));
+  ASSERT_EQ(Export("kitti.txt", "--as=kitti").exit_code, 0);
+  std::istringstream lines(folder_.Read("kitti.txt"));
+  for (const TimedPose& pose : Poses()) {
+    for (int i = 0; i < 12; ++i) {
+      double value = 0;
+      lines >> value;
+      EXPECT_NEAR(value, pose.world_from_camera(i / 4, i % 4), 1e-6);
+    }
+  }
+  EXPECT_TRUE(lines);
 }
 
 TEST_F(SfExport, NumpyReadsWhatCarriesTheVertices) {
@@ -243,29 +255,17 @@ assert (of('tracked') == 1).any() and of('colors').dtype == np.uint8
   EXPECT_GT(count, 1000);
 }
 
-TEST_F(SfExport, PosesAreThoseOfTheRun) {
-  ASSERT_EQ(Export("poses.txt", "--as=tum").exit_code, 0);
-  EXPECT_EQ(folder_.Read("poses.txt"), folder_.Read("run/trajectory.txt"));
-  ASSERT_EQ(Export("kitti.txt", "--as=kitti").exit_code, 0);
-  std::istringstream lines(folder_.Read("kitti.txt"));
-  for (const TimedPose& pose : Poses()) {
-    for (int i = 0; i < 12; ++i) {
-      double value = 0;
-      lines >> value;
-      EXPECT_NEAR(value, pose.world_from_camera(i / 4, i % 4), 1e-6);
-    }
-  }
-  EXPECT_TRUE(lines);
-}
-
-TEST_F(SfExport, SaysWhatIsWrong) {
-  const std::string run = folder_ / "run";
-  const std::string output = " --output=" + (folder_ / "out");
+TEST(SfExportMessages, SayWhatIsWrong) {
+  if (!HasProgram("sf_export")) GTEST_SKIP() << "sf_export is not built";
+  const TemporaryFolder folder;
+  BentPlate().WriteRun(folder.Make("run"));
+  const std::string run = folder / "run";
+  const std::string output = " --output=" + (folder / "out");
   ExpectRefused("sf_export", output + ".glb", "RUN = 0: expected one run");
   ExpectRefused("sf_export", run, "--output = '': expected what to write");
-  ExpectRefused("sf_export", (folder_ / "none") + output + ".glb",
+  ExpectRefused("sf_export", (folder / "none") + output + ".glb",
                 "none: expected the directory of a run");
-  ExpectRefused("sf_export", folder_.Make("empty") + output + ".glb",
+  ExpectRefused("sf_export", folder.Make("empty") + output + ".glb",
                 "empty/trajectory.txt");
   ExpectRefused("sf_export", run + output + ".usd",
                 "expected a name that ends in .glb, .pc2, .npz or /, or --as");
@@ -283,13 +283,13 @@ TEST_F(SfExport, SaysWhatIsWrong) {
                 "--influences = 5: expected 4 or 8");
   ExpectRefused("sf_export", run + output + ".glb --space=moon",
                 "--space = 'moon': expected world or camera");
-  folder_.Write("file", "");
+  folder.Write("file", "");
   for (const char* kind : {"glb", "pc2", "npz", "tum", "kitti", "ply"}) {
     ExpectRefused("sf_export",
-                  run + " --output=" + (folder_ / "file/x") + " --as=" + kind,
-                  folder_ / "file/x");
+                  run + " --output=" + (folder / "file/x") + " --as=" + kind,
+                  folder / "file/x");
   }
-  EXPECT_FALSE(folder_.Has("out.glb"));
+  EXPECT_FALSE(folder.Has("out.glb"));
 }
 
 TEST_F(SfExport, BlenderShowsItWhereTheRunHasIt) {
@@ -304,7 +304,6 @@ TEST_F(SfExport, BlenderShowsItWhereTheRunHasIt) {
                               script.string() + " -- " + (folder_ / "run") +
                               " --glb=" + (folder_ / "scene.glb") +
                               " --pc2=" + (folder_ / "scene_001_person.pc2") +
-
                               " >" + (folder_ / "blender.txt") + " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << folder_.Read("blender.txt");
   EXPECT_THAT(folder_.Read("blender.txt"),
