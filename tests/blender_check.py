@@ -77,17 +77,23 @@ class Run:
         rows = [[float(word) for word in line.split()] for line in
                 (self.folder / 'trajectory.txt').read_text().splitlines()
                 if not line.startswith('#')]
-        frames = [json.loads(line)['frame'] for line in
-                  (self.folder / 'frames.jsonl').read_text().splitlines()]
+        lines = [json.loads(line) for line in
+                 (self.folder / 'frames.jsonl').read_text().splitlines()]
         self.start = rows[0][0]
-        self.poses = dict(zip(frames, rows))
+        self.poses = dict(zip([line['frame'] for line in lines], rows))
+        self.inactive = {(surface['id'], line['frame']) for line in lines
+                         for surface in line['surfaces']
+                         if surface['state'] == 'inactive'}
 
     def time(self, frame):
         return self.poses[frame][0] - self.start
 
     def warped_frames(self, name):
+        """Of a surface, while it is there."""
         warped = self.folder / 'surfaces' / name / 'warped'
-        return sorted(int(path.stem) for path in warped.glob('*.ply'))
+        frames = {int(path.stem) for path in warped.glob('*.ply')}
+        return sorted(f for f in frames
+                      if (int(name[:3]), f) not in self.inactive)
 
     def world_vertices(self, name, frame):
         _, tx, ty, tz, x, y, z, w = self.poses[frame]
@@ -134,18 +140,20 @@ def spread(frames, count):
 def check_glb(run, path, count):
     bpy.ops.import_scene.gltf(filepath=path)
     glb = Glb(path)
-    farthest = {}
+    shown_in = {}  # Names of meshes, by frame.
     for name, node in glb.nodes().items():
-        surface = surface_name(run, name)
         extras = node['extras']
-        sources = glb.sources(name)
-        frames = [f for f in run.warped_frames(surface)
+        frames = [f for f in run.warped_frames(surface_name(run, name))
                   if extras['first_frame'] <= f <= extras['last_frame']]
-        for frame in spread(frames, count):
-            go_to(run.time(frame))
-            true = run.world_vertices(surface, frame)[sources]
-            error = np.linalg.norm(evaluated(bpy.data.objects[name]) - true,
-                                   axis=1)
+        for frame in frames:
+            shown_in.setdefault(frame, []).append(name)
+    farthest = {}
+    for frame in spread(sorted(shown_in), count):
+        go_to(run.time(frame))
+        for name in shown_in[frame]:
+            true = run.world_vertices(surface_name(run, name), frame)
+            error = np.linalg.norm(evaluated(bpy.data.objects[name]) -
+                                   true[glb.sources(name)], axis=1)
             farthest.setdefault(name, {})[frame] = error.max()
     return farthest
 
