@@ -117,12 +117,14 @@ ExportOptions Options(const std::string& kind) {
 }
 
 void SayWhatIsLeftOut(const ExportScene& scene) {
+  std::size_t left_out = 0, shown = 0;
   for (const ExportSurface& surface : scene.surfaces) {
-    if (surface.stretched_triangles == 0) continue;
-    std::cout << surface.name << ": " << surface.stretched_triangles << " of "
-              << surface.stretched_triangles + surface.mesh.triangles.size()
-              << " triangles left out, as they are stretched in some frame\n";
+    left_out += static_cast<std::size_t>(surface.stretched_triangles);
+    shown += surface.mesh.triangles.size();
   }
+  if (left_out == 0) return;
+  std::cout << left_out << " of " << left_out + shown
+            << " triangles are left out, as they are stretched in some frame\n";
 }
 
 /// Cuts the surfaces of a scene into pieces that appear one after another.

@@ -117,13 +117,14 @@ std::vector<ExportSurface> SplitByAppearance(const ExportSurface& surface,
   for (std::size_t m = 0; m < surface.moments.size(); ++m) {
     const ExportMoment& moment = surface.moments[m];
     if (moment.frame < next && m + 1 < surface.moments.size()) continue;
-    // At the multiples, as warped/ is.
-    next = (moment.frame / step + 1) * step;
     Triangles appearing = Appearing(surface, moment, &shown);
     if (m == 0 && appearing.size() == shown.size()) return {surface};
+    if (appearing.empty() && pieces.empty()) continue;
+    // At the multiples, as warped/ is.
+    next = (moment.frame / step + 1) * step;
     if (appearing.empty()) continue;
     pieces.push_back(PieceOf(surface, std::move(appearing), m));
-    if (m > 0) {
+    if (pieces.size() > 1) {
       pieces.back().name += "_from_" + RunPaths::FrameName(moment.frame);
     }
   }
