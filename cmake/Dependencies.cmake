@@ -18,6 +18,10 @@ find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 find_library(XXHASH_LIBRARY xxhash REQUIRED)
 
+# Nor has minizip, which packs arrays for NumPy.
+find_path(MINIZIP_INCLUDE_DIR minizip/zip.h REQUIRED)
+find_library(MINIZIP_LIBRARY minizip REQUIRED)
+
 # Nor has HDF5 one of Debian's; FindHDF5 asks whatever h5cc comes first, which
 # may be that of MPI.
 find_path(HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
@@ -43,8 +47,8 @@ function(splitfusion_link_dependencies target)
     PRIVATE opencv_dnn opencv_features2d opencv_video OpenVDB::openvdb
             pcl_kdtree pcl_sample_consensus cholmod
             SQLite::SQLite3 ZLIB::ZLIB meshoptimizer::meshoptimizer
-            ${XXHASH_LIBRARY} ${HDF5_LIBRARY})
+            ${XXHASH_LIBRARY} ${HDF5_LIBRARY} ${MINIZIP_LIBRARY})
   target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS}
                              ${CHOLMOD_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR}
-                             ${HDF5_INCLUDE_DIR})
+                             ${HDF5_INCLUDE_DIR} ${MINIZIP_INCLUDE_DIR})
 endfunction()

@@ -8,7 +8,7 @@ file(GLOB_RECURSE sources RELATIVE "${ROOT}"
      "${ROOT}/lib/*.h" "${ROOT}/lib/*.cc" "${ROOT}/cost_functions/*"
      "${ROOT}/pipelines/*.h" "${ROOT}/pipelines/*.cc")
 list(FILTER sources EXCLUDE REGEX
-     "^lib/(report|page|evaluation|experiment|synthetic)/")
+     "^lib/(report|page|export|evaluation|experiment|synthetic)/")
 list(SORT sources)
 set(text "")
 foreach(source ${sources})

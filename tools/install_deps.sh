@@ -10,7 +10,8 @@ packages=(
   libceres-dev libeigen3-dev libsuitesparse-dev libopenblas0-pthread
   libopencv-dev libpcl-dev libopenvdb-dev libtbb-dev
   libgflags-dev libgoogle-glog-dev nlohmann-json3-dev libsqlite3-dev
-  libxxhash-dev libhdf5-dev zlib1g-dev libmeshoptimizer-dev
+  libxxhash-dev libhdf5-dev zlib1g-dev libminizip-dev
+  libmeshoptimizer-dev
   libgtest-dev libgmock-dev libbenchmark-dev doxygen python3-onnx
 )
 if [[ "${1:-}" == --tests ]]; then
