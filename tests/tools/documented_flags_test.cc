@@ -20,9 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 using Flags = std::set<std::string>;
 
-constexpr const char* kPrograms[] = {"sf_batch",   "sf_evaluate", "sf_montage",
-                                     "sf_refine",  "sf_report",   "sf_run",
-                                     "sf_segment", "sf_solve",    "sf_synth"};
+constexpr const char* kPrograms[] = {
+    "sf_convert", "sf_batch", "sf_evaluate", "sf_montage", "sf_refine",
+    "sf_report",  "sf_run",   "sf_segment",  "sf_solve",   "sf_synth"};
 
 /// One flag in a page.
 struct Mention {
