@@ -167,19 +167,7 @@ LensDistortion LensOf(const std::string& path, const cv::FileStorage& file) {
   const std::vector<double> numbers = NumbersOf(
       path, FirstOf(file, {"distortion_coefficients", "Distortion_Coefficients",
                            "dist_coeffs", "D"}));
-  LensDistortion lens;
-  const bool is_none = std::all_of(numbers.begin(), numbers.end(),
-                                   [](double c) { return c == 0; });
-  if (is_none) return lens;
-  const bool known = name == "plumb_bob" || name == "rational_polynomial";
-  if (!known || numbers.size() > lens.coefficients.size()) {
-    throw InputError(path + ": distortion '" + name + "' of " +
-                     std::to_string(numbers.size()) +
-                     " coefficients: expected plumb_bob or "
-                     "rational_polynomial, of 8 at most");
-  }
-  std::copy(numbers.begin(), numbers.end(), lens.coefficients.begin());
-  return lens;
+  return MakeLensDistortion(path, name, numbers);
 }
 
 Calibration ReadYamlCalibration(const std::string& path) {
@@ -248,6 +236,25 @@ void SetIntrinsics(const std::string& place, const cv::Mat_<double>& matrix,
       place +
       ": expected a matrix of intrinsics, fx 0 cx, 0 fy cy, 0 0 1, "
       "with focal lengths > 0");
+}
+
+LensDistortion MakeLensDistortion(const std::string& place,
+                                  const std::string& model,
+                                  const std::vector<double>& coefficients) {
+  LensDistortion lens;
+  const bool is_none = std::all_of(coefficients.begin(), coefficients.end(),
+                                   [](double c) { return c == 0; });
+  if (is_none) return lens;
+  const bool known = model == "plumb_bob" || model == "rational_polynomial";
+  if (!known || coefficients.size() > lens.coefficients.size()) {
+    throw InputError(place + ": distortion '" + model + "' of " +
+                     std::to_string(coefficients.size()) +
+                     " coefficients: expected plumb_bob or "
+                     "rational_polynomial, of 8 at most");
+  }
+  std::copy(coefficients.begin(), coefficients.end(),
+            lens.coefficients.begin());
+  return lens;
 }
 
 std::optional<Rigid3d> RigidMotion(const std::string& place,

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/sequence/calibration.h"
@@ -23,6 +24,14 @@ cv::Mat_<double> ReadMatrix(const std::string& path, int rows = 0,
 /// @throw InputError if it is none; `place` names it.
 void SetIntrinsics(const std::string& place, const cv::Mat_<double>& matrix,
                    PinholeCamera* camera);
+
+/// The distortion that coefficients are, by the name that ROS gives its model.
+///
+/// @throw InputError if it is neither plumb_bob nor rational_polynomial, unless
+///     all are 0; `place` names it.
+LensDistortion MakeLensDistortion(const std::string& place,
+                                  const std::string& model,
+                                  const std::vector<double>& coefficients);
 
 /// The rigid motion that a 4x4 matrix is, its rotation made one exactly; none
 /// if a number is not finite, which is how data sets mark poses that are not

@@ -2,34 +2,15 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <map>
-#include <mutex>
 
-#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/sequence/numbered_files.h"
+#include "splitfusion/lib/sequence/open_files.h"
 #include "splitfusion/lib/sequence/sens_file.h"
 
 namespace splitfusion {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Files of one kind that have been opened, by their paths.
-template <typename File>
-class OpenFiles {
- public:
-  /// The file at `path`, opened if it was not yet.
-  std::shared_ptr<const File> At(const std::string& path) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    std::shared_ptr<const File>& file = files_[path];
-    if (!file) file = std::make_shared<const File>(path);
-    return file;
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<const File>> files_;
-};
 
 /// "000012.jpg".
 std::string NameInContainer(int i, const char* extension) {

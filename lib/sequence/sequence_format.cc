@@ -56,6 +56,7 @@ FormatRegistry BuiltinFormats() {
   registry.Register("deepdeform", MakeDeepDeformFormat);
   registry.Register("redwood", MakeRedwoodFormat);
   registry.Register("sens", MakeSensFormat);
+  registry.Register("rosbag", MakeRosBagFormat);
   return registry;
 }
 

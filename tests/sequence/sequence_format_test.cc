@@ -89,7 +89,7 @@ TEST(SequenceFormat, WhatNoneRecognisesListsThem) {
                    "7scenes (frame-000000.color.png, frame-000000.depth.png, "
                    "...), scannet (color/, depth/ and ");
   ExpectInputError([&] { ImageFolderReader(folder / ""); },
-                   " or sens (a file *.sens)");
+                   "sens (a file *.sens) or rosbag (a file *.bag of ROS 1)");
   ExpectInputError([&] { ImageFolderReader(folder / "none"); },
                    "no such folder or file");
   ReaderOptions options;
