@@ -4,6 +4,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/sequence/image_file.h"
+#include "splitfusion/lib/sequence/image_folder_reader.h"
 
 namespace splitfusion {
 namespace {
@@ -59,6 +60,8 @@ LiveImages::LiveImages(const RecordedRun& run)
   reader_ = std::make_shared<const ImageFolderReader>(run.sequence, run.reading,
                                                       run.formats);
 }
+
+const PinholeCamera& LiveImages::camera() const { return reader_->camera(); }
 
 cv::Mat_<float> LiveImages::Depth(const RecordedFrame& frame) const {
   CheckOption(frame.index >= 0 && frame.index < reader_->size(),

@@ -8,9 +8,10 @@
 #include <string>
 
 #include "splitfusion/lib/evaluation/recorded_run.h"
-#include "splitfusion/lib/sequence/image_folder_reader.h"
 
 namespace splitfusion {
+
+class ImageFolderReader;
 
 /// STEM.png of a folder of images of ids, HxW; empty if there is no such file.
 ///
@@ -35,7 +36,7 @@ class LiveImages {
   explicit LiveImages(const RecordedRun& run);
 
   /// Intrinsics of all images.
-  const PinholeCamera& camera() const { return reader_->camera(); }
+  const PinholeCamera& camera() const;
 
   /// Depth as measured, HxW, metres, 0 = none.
   ///

@@ -87,7 +87,7 @@ double ValueOr(const KeyValues& values, const std::string& key,
   return found == values.end() ? otherwise : found->second;
 }
 
-LensDistortion LensOf(const KeyValues& values, const std::string& prefix) {
+LensDistortion LensOfKeys(const KeyValues& values, const std::string& prefix) {
   LensDistortion lens;
   for (std::size_t i = 0; i < kDistortionKeys.size(); ++i) {
     lens.coefficients[i] = ValueOr(values, prefix + kDistortionKeys[i], 0);
@@ -96,8 +96,8 @@ LensDistortion LensOf(const KeyValues& values, const std::string& prefix) {
 }
 
 /// The colour camera of camera.txt, if there is any key of one.
-std::optional<ColorCamera> ColorOf(const std::string& path,
-                                   const KeyValues& values) {
+std::optional<ColorCamera> ColorCameraOfKeys(const std::string& path,
+                                             const KeyValues& values) {
   const auto first = values.lower_bound(kColorPrefix);
   if (first == values.end() || first->first.rfind(kColorPrefix, 0) != 0) {
     return std::nullopt;
@@ -125,15 +125,15 @@ std::optional<ColorCamera> ColorOf(const std::string& path,
   return color;
 }
 
-void WriteLens(const std::string& prefix, const LensDistortion& lens,
-               std::ostream& out) {
+void WriteLensKeys(const std::string& prefix, const LensDistortion& lens,
+                   std::ostream& out) {
   for (std::size_t i = 0; i < kDistortionKeys.size(); ++i) {
     if (lens.coefficients[i] == 0) continue;
     out << prefix << kDistortionKeys[i] << ' ' << lens.coefficients[i] << '\n';
   }
 }
 
-void WriteColor(const ColorCamera& color, std::ostream& out) {
+void WriteColorKeys(const ColorCamera& color, std::ostream& out) {
   const Eigen::Vector3d t = color.color_from_depth.translation();
   const Eigen::Quaterniond q(color.color_from_depth.linear());
   const std::pair<const char*, double> values[] = {
@@ -195,9 +195,9 @@ Calibration ReadCalibrationKeys(const std::string& path) {
   result.camera.cx = Require(path, values, "cx");
   result.camera.cy = Require(path, values, "cy");
   result.depth_scale = Require(path, values, "depth_scale");
-  result.lens = LensOf(values, "");
-  result.color = ColorOf(path, values);
-  result.color_lens = LensOf(values, kColorPrefix);
+  result.lens = LensOfKeys(values, "");
+  result.color = ColorCameraOfKeys(path, values);
+  result.color_lens = LensOfKeys(values, kColorPrefix);
   CheckCalibration(path, result);
   return result;
 }
@@ -210,10 +210,10 @@ void WriteCalibrationKeys(const std::string& path,
         << camera.height << "\nfx " << camera.fx << "\nfy " << camera.fy
         << "\ncx " << camera.cx << "\ncy " << camera.cy << "\ndepth_scale "
         << calibration.depth_scale << '\n';
-    WriteLens("", calibration.lens, out);
+    WriteLensKeys("", calibration.lens, out);
     if (!calibration.color) return;
-    WriteColor(*calibration.color, out);
-    WriteLens(kColorPrefix, calibration.color_lens, out);
+    WriteColorKeys(*calibration.color, out);
+    WriteLensKeys(kColorPrefix, calibration.color_lens, out);
   });
 }
 

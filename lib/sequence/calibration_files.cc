@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxBytes = 1 << 20;
+constexpr std::uintmax_t kMaxCalibrationBytes = 1 << 20;
 
 /// In order of precedence.
 constexpr const char* kForeignFiles[] = {
@@ -32,7 +32,7 @@ constexpr const char* kForeignFiles[] = {
 std::string ReadWhole(const std::string& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error) ||
-      fs::file_size(path, error) > kMaxBytes) {
+      fs::file_size(path, error) > kMaxCalibrationBytes) {
     throw InputError(path +
                      ": expected a file of intrinsics, of 1 MiB at most");
   }
@@ -42,7 +42,7 @@ std::string ReadWhole(const std::string& path) {
 }
 
 /// Numbers of a line, separated by blanks or commas.
-std::vector<double> NumbersOf(const TextLine& line) {
+std::vector<double> RowOf(const TextLine& line) {
   std::string text = line.text;
   std::replace(text.begin(), text.end(), ',', ' ');
   std::istringstream words(text);
@@ -72,21 +72,21 @@ cv::Mat_<double> SquareMatrix(const std::string& place,
   return matrix;
 }
 
-using Json = nlohmann::json;
+using CameraJson = nlohmann::json;
 
 /// A number of a JSON object; `otherwise` if there is none of that name.
-double NumberOf(const std::string& path, const Json& object,
-                const std::string& key, double otherwise) {
+double JsonNumber(const std::string& path, const CameraJson& object,
+                  const std::string& key, double otherwise) {
   const auto found = object.find(key);
   if (found == object.end()) return otherwise;
   if (found->is_number()) return found->get<double>();
   throw InputError(path + ": '" + key + "': expected a number");
 }
 
-int SizeOf(const std::string& path, const Json& object,
-           const std::string& key) {
+int JsonSize(const std::string& path, const CameraJson& object,
+             const std::string& key) {
   constexpr double kMost = 1e6;
-  const double size = NumberOf(path, object, key, 0);
+  const double size = JsonNumber(path, object, key, 0);
   if (size >= 0 && size <= kMost) return static_cast<int>(size);
   std::ostringstream text;
   text << path << ": '" << key << "' = " << size
@@ -94,15 +94,16 @@ int SizeOf(const std::string& path, const Json& object,
   throw InputError(text.str());
 }
 
-std::vector<double> NumbersOf(const std::string& path, const Json& object,
-                              const std::string& key) {
+std::vector<double> JsonNumbers(const std::string& path,
+                                const CameraJson& object,
+                                const std::string& key) {
   std::vector<double> numbers;
   const auto found = object.find(key);
   if (found == object.end() || !found->is_array()) {
     throw InputError(path + ": no list '" + key +
                      "': expected Open3D's width, height, intrinsic_matrix");
   }
-  for (const Json& item : *found) {
+  for (const CameraJson& item : *found) {
     if (!item.is_number()) {
       throw InputError(path + ": '" + key + "': expected numbers");
     }
@@ -112,27 +113,27 @@ std::vector<double> NumbersOf(const std::string& path, const Json& object,
 }
 
 Calibration ReadJsonCalibration(const std::string& path) {
-  const Json json = Json::parse(ReadWhole(path), nullptr, false);
+  const CameraJson json = CameraJson::parse(ReadWhole(path), nullptr, false);
   if (!json.is_object()) {
     throw InputError(path + ": expected a JSON object of a camera");
   }
   // Open3D writes a pinhole trajectory's camera as a member.
   const auto inner = json.find("intrinsic");
-  const Json& camera =
+  const CameraJson& camera =
       inner != json.end() && inner->is_object() ? *inner : json;
   Calibration result;
-  result.camera.width = SizeOf(path, camera, "width");
-  result.camera.height = SizeOf(path, camera, "height");
-  result.depth_scale = NumberOf(path, json, "depth_scale", 0);
+  result.camera.width = JsonSize(path, camera, "width");
+  result.camera.height = JsonSize(path, camera, "height");
+  result.depth_scale = JsonNumber(path, json, "depth_scale", 0);
   const cv::Mat_<double> columns =
-      SquareMatrix(path, NumbersOf(path, camera, "intrinsic_matrix"));
+      SquareMatrix(path, JsonNumbers(path, camera, "intrinsic_matrix"));
   SetIntrinsics(path, cv::Mat(columns.t()), &result.camera);
   return result;
 }
 
 /// A list of numbers, or the `data` of a matrix.
-std::vector<double> NumbersOf(const std::string& path,
-                              const cv::FileNode& node) {
+std::vector<double> YamlNumbers(const std::string& path,
+                                const cv::FileNode& node) {
   const cv::FileNode list = node.isMap() ? node["data"] : node;
   std::vector<double> numbers;
   if (!list.isSeq()) return numbers;
@@ -146,8 +147,8 @@ std::vector<double> NumbersOf(const std::string& path,
 }
 
 /// The first of the names that is there; none if there is none.
-cv::FileNode FirstOf(const cv::FileStorage& file,
-                     const std::vector<const char*>& names) {
+cv::FileNode YamlNode(const cv::FileStorage& file,
+                      const std::vector<const char*>& names) {
   for (const char* name : names) {
     const cv::FileNode node = file[name];
     if (!node.empty() && !node.isNone()) return node;
@@ -155,18 +156,19 @@ cv::FileNode FirstOf(const cv::FileStorage& file,
   return {};
 }
 
-int SizeOf(const cv::FileStorage& file, const std::vector<const char*>& names) {
-  const cv::FileNode node = FirstOf(file, names);
+int YamlSize(const cv::FileStorage& file,
+             const std::vector<const char*>& names) {
+  const cv::FileNode node = YamlNode(file, names);
   return node.isInt() ? static_cast<int>(node) : 0;
 }
 
-LensDistortion LensOf(const std::string& path, const cv::FileStorage& file) {
-  const cv::FileNode model = FirstOf(file, {"distortion_model"});
+LensDistortion YamlLens(const std::string& path, const cv::FileStorage& file) {
+  const cv::FileNode model = YamlNode(file, {"distortion_model"});
   const std::string name =
       model.isString() ? static_cast<std::string>(model) : "plumb_bob";
-  const std::vector<double> numbers = NumbersOf(
-      path, FirstOf(file, {"distortion_coefficients", "Distortion_Coefficients",
-                           "dist_coeffs", "D"}));
+  const std::vector<double> numbers = YamlNumbers(
+      path, YamlNode(file, {"distortion_coefficients",
+                            "Distortion_Coefficients", "dist_coeffs", "D"}));
   return MakeLensDistortion(path, name, numbers);
 }
 
@@ -182,14 +184,15 @@ Calibration ReadYamlCalibration(const std::string& path) {
                                          cv::FileStorage::MEMORY |
                                          cv::FileStorage::FORMAT_YAML);
     const cv::FileNode matrix =
-        FirstOf(file, {"camera_matrix", "Camera_Matrix", "cameraMatrix", "K"});
-    result.camera.width = SizeOf(file, {"image_width", "image_Width", "width"});
+        YamlNode(file, {"camera_matrix", "Camera_Matrix", "cameraMatrix", "K"});
+    result.camera.width =
+        YamlSize(file, {"image_width", "image_Width", "width"});
     result.camera.height =
-        SizeOf(file, {"image_height", "image_Height", "height"});
-    SetIntrinsics(path, SquareMatrix(path, NumbersOf(path, matrix)),
+        YamlSize(file, {"image_height", "image_Height", "height"});
+    SetIntrinsics(path, SquareMatrix(path, YamlNumbers(path, matrix)),
                   &result.camera);
-    result.lens = LensOf(path, file);
-    const cv::FileNode scale = FirstOf(file, {"depth_scale"});
+    result.lens = YamlLens(path, file);
+    const cv::FileNode scale = YamlNode(file, {"depth_scale"});
     if (scale.isInt() || scale.isReal()) {
       result.depth_scale = static_cast<double>(scale);
     }
@@ -209,7 +212,7 @@ cv::Mat_<double> ReadMatrix(const std::string& path, int rows, int columns) {
                : "3x3 or 4x4";
   cv::Mat_<double> matrix;
   for (const TextLine& line : ReadTextLines(path, /*cut_comments=*/true)) {
-    const std::vector<double> numbers = NumbersOf(line);
+    const std::vector<double> numbers = RowOf(line);
     const int most = columns > 0 ? columns : 4;
     const bool fits = static_cast<int>(numbers.size()) <= most &&
                       (matrix.empty() || matrix.cols == int(numbers.size()));

@@ -26,8 +26,8 @@ InfoLines ReadInfoLines(const std::string& path) {
   return lines;
 }
 
-std::vector<double> NumbersOf(const std::string& path, const InfoLines& lines,
-                              const std::string& key) {
+std::vector<double> InfoNumbers(const std::string& path, const InfoLines& lines,
+                                const std::string& key) {
   const auto found = lines.find(key);
   if (found == lines.end()) {
     throw InputError(path + ": no line '" + key +
@@ -40,28 +40,28 @@ std::vector<double> NumbersOf(const std::string& path, const InfoLines& lines,
   return numbers;
 }
 
-int SizeOf(const std::string& path, const InfoLines& lines,
-           const std::string& key) {
+int InfoSize(const std::string& path, const InfoLines& lines,
+             const std::string& key) {
   constexpr double kMost = 1e5;
-  const double size = NumbersOf(path, lines, key).front();
+  const double size = InfoNumbers(path, lines, key).front();
   if (size >= 1 && size <= kMost) return static_cast<int>(size);
   lines.at(key).Refuse("a size in pixels");
 }
 
 /// Of 4x4 numbers; some writers leave the last row out.
-cv::Mat_<double> MatrixOf(const std::string& path, const InfoLines& lines,
-                          const std::string& key) {
-  std::vector<double> numbers = NumbersOf(path, lines, key);
+cv::Mat_<double> InfoMatrix(const std::string& path, const InfoLines& lines,
+                            const std::string& key) {
+  std::vector<double> numbers = InfoNumbers(path, lines, key);
   if (numbers.size() == 12) numbers.insert(numbers.end(), {0, 0, 0, 1});
   if (numbers.size() != 16) lines.at(key).Refuse("a matrix of 4x4");
   return cv::Mat(numbers, /*copyData=*/true).reshape(1, 4);
 }
 
-Rigid3d ExtrinsicOf(const std::string& path, const InfoLines& lines,
-                    const std::string& key) {
+Rigid3d InfoExtrinsic(const std::string& path, const InfoLines& lines,
+                      const std::string& key) {
   if (lines.count(key) == 0) return Rigid3d::Identity();
   const auto motion =
-      RigidMotion(path + ": " + key, MatrixOf(path, lines, key));
+      RigidMotion(path + ": " + key, InfoMatrix(path, lines, key));
   return motion.value_or(Rigid3d::Identity());
 }
 
@@ -94,21 +94,21 @@ Calibration CalibrationOf(const std::string& place, const TwoCameras& cameras) {
 Calibration ReadInfoFile(const std::string& path) {
   const InfoLines lines = ReadInfoLines(path);
   const auto size = [&](const std::string& camera) {
-    return cv::Size(SizeOf(path, lines, "m_" + camera + "Width"),
-                    SizeOf(path, lines, "m_" + camera + "Height"));
+    return cv::Size(InfoSize(path, lines, "m_" + camera + "Width"),
+                    InfoSize(path, lines, "m_" + camera + "Height"));
   };
   TwoCameras cameras;
   cameras.color_size = size("color");
   cameras.depth_size = size("depth");
   cameras.color_intrinsic =
-      MatrixOf(path, lines, "m_calibrationColorIntrinsic");
+      InfoMatrix(path, lines, "m_calibrationColorIntrinsic");
   cameras.depth_intrinsic =
-      MatrixOf(path, lines, "m_calibrationDepthIntrinsic");
+      InfoMatrix(path, lines, "m_calibrationDepthIntrinsic");
   cameras.color_extrinsic =
-      ExtrinsicOf(path, lines, "m_calibrationColorExtrinsic");
+      InfoExtrinsic(path, lines, "m_calibrationColorExtrinsic");
   cameras.depth_extrinsic =
-      ExtrinsicOf(path, lines, "m_calibrationDepthExtrinsic");
-  cameras.depth_scale = NumbersOf(path, lines, "m_depthShift").front();
+      InfoExtrinsic(path, lines, "m_calibrationDepthExtrinsic");
+  cameras.depth_scale = InfoNumbers(path, lines, "m_depthShift").front();
   return CalibrationOf(path, cameras);
 }
 

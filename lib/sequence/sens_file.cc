@@ -15,12 +15,12 @@
 namespace splitfusion {
 namespace {
 
-constexpr std::uint32_t kVersion = 4;
-constexpr std::uint32_t kMaxSide = 10000;  // Pixels.
-constexpr std::uint64_t kMaxName = 4096;   // Bytes.
+constexpr std::uint32_t kSensVersion = 4;
+constexpr std::uint32_t kMaxSensSide = 10000;   // Pixels.
+constexpr std::uint64_t kMaxSensorName = 4096;  // Bytes.
 
-enum ColorCompression { kRawColor = 0, kPng = 1, kJpeg = 2 };
-enum DepthCompression { kRawDepth = 0, kZlib = 1 };
+enum ColorCompression { kColorRaw = 0, kColorPng = 1, kColorJpeg = 2 };
+enum DepthCompression { kDepthRaw = 0, kDepthZlib = 1 };
 
 }  // namespace
 
@@ -95,9 +95,9 @@ SensFile::SensFile(const std::string& path) : path_(path) {
 }
 
 void SensFile::ReadHeader(Stream* stream) {
-  if (stream->Read<std::uint32_t>() != kVersion) stream->Fail();
+  if (stream->Read<std::uint32_t>() != kSensVersion) stream->Fail();
   const auto name = stream->Read<std::uint64_t>();  // Of the sensor.
-  if (name > kMaxName) stream->Fail();
+  if (name > kMaxSensorName) stream->Fail();
   stream->Skip(name);
   cameras_.color_intrinsic = stream->ReadMatrix();
   const cv::Mat_<double> color_extrinsic = stream->ReadMatrix();
@@ -111,8 +111,8 @@ void SensFile::ReadHeader(Stream* stream) {
           .value_or(Rigid3d::Identity());
   color_compression_ = stream->Read<std::int32_t>();
   depth_compression_ = stream->Read<std::int32_t>();
-  if (color_compression_ < kRawColor || color_compression_ > kJpeg ||
-      depth_compression_ < kRawDepth || depth_compression_ > kZlib) {
+  if (color_compression_ < kColorRaw || color_compression_ > kColorJpeg ||
+      depth_compression_ < kDepthRaw || depth_compression_ > kDepthZlib) {
     throw InputError(path_ + ": compression " +
                      std::to_string(color_compression_) + " of colour, " +
                      std::to_string(depth_compression_) +
@@ -122,7 +122,8 @@ void SensFile::ReadHeader(Stream* stream) {
   const auto read_size = [&] {
     const auto width = stream->Read<std::uint32_t>();
     const auto height = stream->Read<std::uint32_t>();
-    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
+    if (width < 1 || height < 1 || width > kMaxSensSide ||
+        height > kMaxSensSide) {
       stream->Fail();
     }
     return cv::Size(static_cast<int>(width), static_cast<int>(height));
@@ -160,7 +161,7 @@ cv::Mat SensFile::ReadColor(int i) const {
       Stream(path_).Bytes(place.color_offset, place.color_bytes);
   const cv::Size size = cameras_.color_size;
   cv::Mat color;
-  if (color_compression_ != kRawColor) {
+  if (color_compression_ != kColorRaw) {
     color = DecodeImage(NameOf(i), bytes,
                         cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   } else if (bytes.size() == 3 * static_cast<std::size_t>(size.area())) {
@@ -180,7 +181,7 @@ cv::Mat SensFile::ReadDepth(int i) const {
   const uLongf expected = depth.total() * sizeof(std::uint16_t);
   uLongf got = expected;
   bool good = false;
-  if (depth_compression_ == kZlib) {
+  if (depth_compression_ == kDepthZlib) {
     good = uncompress(depth.data, &got, bytes.data(), bytes.size()) == Z_OK;
   } else if (bytes.size() == expected) {
     std::memcpy(depth.data, bytes.data(), expected);
