@@ -15,6 +15,34 @@ constexpr double kTimeTolerance = 0.02;
 constexpr double kTumDepthScale = 5000;
 constexpr double kIclFramesPerSecond = 30;
 
+/// Name of a folder, also of "folder/" and ".".
+std::string NameOf(const std::string& folder) {
+  std::error_code error;
+  const fs::path path = fs::weakly_canonical(folder, error);
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+/// What the benchmark's page gives for the colour cameras of its folders, to
+/// which depth is registered; none for another folder.
+std::optional<Calibration> BenchmarkCalibration(const std::string& folder) {
+  const auto is_of = [&](const char* camera) {
+    return folder.find(camera) != std::string::npos;
+  };
+  Calibration found{{}, kTumDepthScale};
+  if (is_of("freiburg1")) {
+    found.camera = {640, 480, 517.3, 516.5, 318.6, 255.3};
+    found.lens.coefficients = {0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
+  } else if (is_of("freiburg2")) {
+    found.camera = {640, 480, 520.9, 521.0, 325.1, 249.7};
+    found.lens.coefficients = {0.2312, -0.7849, -0.0033, -0.0001, 0.9172};
+  } else if (is_of("freiburg3")) {
+    found.camera = {640, 480, 535.4, 539.2, 320.1, 247.6};
+  } else {
+    return std::nullopt;
+  }
+  return found;
+}
+
 class TumFormat : public SequenceFormat {
  public:
   std::string Files() const override {
@@ -32,14 +60,13 @@ class TumFormat : public SequenceFormat {
       const std::string& sequence) const override {
     return FindAssociations(sequence, kTimeTolerance);
   }
-};
 
-/// Name of a folder, also of "folder/" and ".".
-std::string NameOf(const std::string& folder) {
-  std::error_code error;
-  const fs::path path = fs::weakly_canonical(folder, error);
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
-}
+  std::optional<Calibration> FindCalibration(
+      const std::string& sequence) const override {
+    const auto found = SequenceFormat::FindCalibration(sequence);
+    return found ? found : BenchmarkCalibration(NameOf(sequence));
+  }
+};
 
 class BonnFormat : public TumFormat {
  public:

@@ -9,6 +9,9 @@ namespace splitfusion {
 
 /// The layout of the TUM RGB-D benchmark: `associations.txt`, or else `rgb.txt`
 /// and `depth.txt` paired by time stamp; colour png or jpg; depth 16-bit PNG.
+/// Without a calibration file folders named after the benchmark's cameras,
+/// `rgbd_dataset_freiburg1_...` to 3, have the intrinsics and the distortion of
+/// its page.
 std::unique_ptr<SequenceFormat> MakeTumFormat();
 
 /// The Bonn RGB-D Dynamic data set: the TUM layout in folders whose name begins

@@ -106,6 +106,15 @@ TEST_F(BonnData, OfAnotherFolderIsTumAndNeedsACalibration) {
   ExpectRefused("none", "bonn", "no such folder");
 }
 
+TEST_F(BonnData, OfTumsNameHasTheCameraOfTheBenchmark) {
+  const std::string name = "rgbd_dataset_freiburg2_box";
+  std::filesystem::rename(folder_ / "rgbd_bonn_box", folder_ / name);
+  ExpectTwoFrames(name, "tum");
+  const ImageFolderReader reader(folder_ / name);
+  EXPECT_DOUBLE_EQ(reader.camera().cy, 249.7);
+  EXPECT_DOUBLE_EQ(reader.calibration().lens.coefficients[4], 0.9172);
+}
+
 class IclNuimData : public DataSets {
  protected:
   void SetUp() override {
