@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/error.h"
@@ -11,7 +10,12 @@
 namespace splitfusion {
 namespace {
 
-/// The nearest of the four pixels around a place with a measurement; 0 if none.
+/// Half the diagonal of a pixel, squared: no place has its nearest pixel
+/// farther away.
+constexpr float kNearPixel = 0.5f;
+
+/// The nearest pixel of a place with a measurement, no farther than the nearest
+/// of all may be; 0 if there is none.
 float NearestMeasured(const cv::Mat_<float>& depth, const cv::Vec2f& place) {
   // Also false for what is not a number.
   const bool is_inside = place[0] > -1 && place[1] > -1 &&
@@ -19,7 +23,7 @@ float NearestMeasured(const cv::Mat_<float>& depth, const cv::Vec2f& place) {
                          place[1] < static_cast<float>(depth.rows);
   if (!is_inside) return 0;
   const int u0 = cvFloor(place[0]), v0 = cvFloor(place[1]);
-  float best = 0, least = std::numeric_limits<float>::max();
+  float best = 0, least = kNearPixel * 1.001f;  // For rounding.
   for (int v = std::max(v0, 0); v <= std::min(v0 + 1, depth.rows - 1); ++v) {
     for (int u = std::max(u0, 0); u <= std::min(u0 + 1, depth.cols - 1); ++u) {
       const float du = static_cast<float>(u) - place[0];

@@ -48,8 +48,9 @@ class Undistortion {
   /// A colour image, HxW 8UC3: bilinear, black beyond the image.
   cv::Mat Color(const cv::Mat& image) const;
 
-  /// A depth image, HxW 32FC1, 0 = none: the nearest of the four pixels around
-  /// that has a measurement, since depths must not be mixed.
+  /// A depth image, HxW 32FC1, 0 = none: the nearest pixel that has a
+  /// measurement, within half the diagonal of one, since depths must not be
+  /// mixed.
   cv::Mat_<float> Depth(const cv::Mat_<float>& depth) const;
 
   /// A mask, HxW 8UC1: nearest, 0 beyond the image.
