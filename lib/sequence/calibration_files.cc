@@ -172,6 +172,12 @@ LensDistortion YamlLens(const std::string& path, const cv::FileStorage& file) {
   return MakeLensDistortion(path, name, numbers);
 }
 
+[[noreturn]] void FailAsYaml(const std::string& path) {
+  throw InputError(path +
+                   ": expected YAML with image_width, image_height, "
+                   "camera_matrix, as OpenCV and ROS write it");
+}
+
 Calibration ReadYamlCalibration(const std::string& path) {
   std::string text = ReadWhole(path);
   if (text.rfind("%YAML", 0) != 0) {  // That of ROS has no such line.
@@ -189,17 +195,16 @@ Calibration ReadYamlCalibration(const std::string& path) {
         YamlSize(file, {"image_width", "image_Width", "width"});
     result.camera.height =
         YamlSize(file, {"image_height", "image_Height", "height"});
-    SetIntrinsics(path, SquareMatrix(path, YamlNumbers(path, matrix)),
-                  &result.camera);
+    const std::vector<double> elements = YamlNumbers(path, matrix);
+    if (elements.empty()) FailAsYaml(path);
+    SetIntrinsics(path, SquareMatrix(path, elements), &result.camera);
     result.lens = YamlLens(path, file);
     const cv::FileNode scale = YamlNode(file, {"depth_scale"});
     if (scale.isInt() || scale.isReal()) {
       result.depth_scale = static_cast<double>(scale);
     }
   } catch (const cv::Exception&) {
-    throw InputError(path +
-                     ": expected YAML with image_width, image_height, "
-                     "camera_matrix, as OpenCV and ROS write it");
+    FailAsYaml(path);
   }
   return result;
 }

@@ -139,7 +139,7 @@ TEST_F(CalibrationFiles, BrokenJsonIsNamed) {
 TEST_F(CalibrationFiles, BrokenYamlIsNamed) {
   ExpectRefused("c.yaml", "", ": expected YAML");
   ExpectRefused("c.yaml", "{[", ": expected YAML");
-  ExpectRefused("c.yaml", "image_width: 640\n", ": 0 numbers: expected");
+  ExpectRefused("c.yaml", "image_width: 640\n", ": expected YAML");
   ExpectRefused("c.yaml", "K: [1, two]\n", ": 'K': expected numbers");
   std::string fisheye = kRosYaml;
   fisheye.replace(fisheye.find("plumb_bob"), 9, "equidistant");

@@ -79,7 +79,7 @@ TEST_F(SevenScenes, AFormatCanBeNamed) {
 
 TEST(SequenceFormat, WhatNoneRecognisesListsThem) {
   const TemporaryFolder folder;
-  folder.Write("frame-1.color.png", "");
+  folder.Write("frame-.color.png", "");
   folder.Write("frame-abcdef.color.png", "");
   ExpectInputError([&] { ImageFolderReader(folder / ""); },
                    folder / "" +
