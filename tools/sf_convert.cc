@@ -4,7 +4,6 @@
 #include <glog/logging.h>
 
 #include <cstdio>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
