@@ -1,8 +1,11 @@
 #include "splitfusion/lib/sequence/folder_formats.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/text_file.h"
 #include "splitfusion/lib/sequence/calibration_files.h"
 #include "splitfusion/lib/sequence/image_file.h"
 #include "splitfusion/lib/sequence/info_file.h"
@@ -139,10 +142,49 @@ class DeepDeformFormat : public FolderFormat {
   }
 };
 
+/// The numbers of a line.
+///
+/// @throw InputError unless it has so many.
+std::vector<double> LogNumbers(const TextLine& line, int count) {
+  std::istringstream words(line.text);
+  std::vector<double> numbers(count);
+  for (double& number : numbers) words >> number;
+  if (!words || !(words >> std::ws).eof()) {
+    line.Refuse(std::to_string(count) +
+                " numbers: blocks of an index line and a 4x4 matrix");
+  }
+  return numbers;
+}
+
 class RedwoodFormat : public FolderFormat {
  public:
   std::string Files() const override {
     return "depth/ and color/, rgb/ or image/";
+  }
+
+  Trajectory FindPoses(
+      const std::string& sequence,
+      const std::vector<AssociatedFiles>& frames) const override {
+    const fs::path log = fs::path(sequence) / "trajectory.log";
+    if (!fs::exists(log)) return FolderFormat::FindPoses(sequence, frames);
+    const std::vector<AssociatedFiles> all = FindFrames(sequence);
+    const std::vector<TextLine> lines = ReadTextLines(log.string());
+    Trajectory poses;
+    for (std::size_t at = 0; at + 5 <= lines.size(); at += 5) {
+      const double index = LogNumbers(lines[at], 3)[0];
+      cv::Mat_<double> matrix(4, 4);
+      for (int row = 0; row < 4; ++row) {
+        const std::vector<double> numbers = LogNumbers(lines[at + 1 + row], 4);
+        std::copy(numbers.begin(), numbers.end(), matrix[row]);
+      }
+      const auto pose = RigidMotion(lines[at].place, matrix);
+      if (!pose || !(index >= 0 && index < static_cast<double>(all.size()))) {
+        continue;
+      }
+      poses.push_back(
+          {all[static_cast<std::size_t>(index)].depth.timestamp, *pose});
+    }
+    return poses;
   }
 
  protected:

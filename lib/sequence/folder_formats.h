@@ -22,6 +22,8 @@ std::unique_ptr<SequenceFormat> MakeDeepDeformFormat();
 /// (`camera_intrinsic.json`, `intrinsic.json`), or another calibration file;
 /// Redwood's own files (`0000001-000000033369.jpg`) without one have those of a
 /// PrimeSense, 525 525 319.5 239.5 at 640x480. Millimetres unless a file tells.
+/// Poses are those of `trajectory.log`, blocks of an index line and a 4x4
+/// matrix.
 std::unique_ptr<SequenceFormat> MakeRedwoodFormat();
 
 }  // namespace splitfusion

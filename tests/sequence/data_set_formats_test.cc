@@ -336,6 +336,15 @@ TEST_F(DataSets, Open3dPairsByNumberOrOrder) {
   folder_.Write("p/intrinsic.json", kJson);
   ExpectTwoFrames("o", "redwood");
   ExpectTwoFrames("p", "redwood");
+  folder_.Write("o/trajectory.log", "1 1 2\n" + std::string(kPoseAtTwo));
+  const Trajectory poses = ImageFolderReader(folder_ / "o").FindSequencePoses();
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_DOUBLE_EQ(poses[0].timestamp, 1 / 30.0);
+  EXPECT_EQ(poses[0].world_from_camera.translation().x(), 2);
+  folder_.Write("o/trajectory.log", "1 1 2\n1 0\n\n1\n2\n3\n");
+  ExpectInputError(
+      [&] { ImageFolderReader(folder_ / "o").FindSequencePoses(); },
+      "trajectory.log:2: '1 0': expected 4 numbers");
   WriteDepth("p/depth/00002.png", 3000);
   ExpectRefused("p", "auto", "2 colour and 3 depth images");
   folder_.Write("o/intrinsic.json", "{");
