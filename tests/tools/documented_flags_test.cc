@@ -153,6 +153,7 @@ TEST(DocumentedFlags, AreThoseOfThePrograms) {
   const std::map<std::string, Flags> known = KnownFlags();
   // Of cmake and ctest.
   Flags any = {"build", "install", "prefix", "preset", "target", "parallel"};
+  any.insert("input");  // Of Open3D.
   // Of sbatch, squeue, apt-get, apptainer and tests/slurm.sh.
   any.insert({"array", "bind", "cpus", "fakeroot", "me", "mem", "no",
               "no_install", "open", "partition", "requeue", "time"});
