@@ -38,8 +38,9 @@ SequenceEntry MakeSequence(const std::string& folder,
                            const std::string& root) {
   const fs::path path =
       fs::absolute(fs::path(root) / folder).lexically_normal();
-  if (!fs::is_directory(path)) {
-    throw InputError(folder + ": not found; expected a sequence folder");
+  if (!fs::is_directory(path) && !fs::is_regular_file(path)) {
+    throw InputError(folder +
+                     ": not found; expected a sequence folder, or its file");
   }
   const fs::path whole = path.has_filename() ? path : path.parent_path();
   SequenceEntry entry;
