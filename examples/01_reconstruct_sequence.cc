@@ -51,6 +51,7 @@ void Reconstruct(const std::string& sequence, const std::string& output) {
   splitfusion::SplitFusion fusion(reader.camera(),
                                   splitfusion::PipelineOptions(),
                                   splitfusion::LabelTable(), segmenter);
+  fusion.set_color_camera(reader.calibration().color);
   while (const auto frame = reader.Next()) Print(fusion.ProcessFrame(*frame));
   fusion.Finish();
   splitfusion::WriteTumTrajectory(output + "/trajectory.txt",

@@ -157,8 +157,9 @@ void SequenceRun::SerializeState(Archive* archive) {
 void SequenceRun::SaveCheckpoint() {
   const Stopwatch writing;
   if (options_.keep_checkpoints) {
+    const ReaderOptions& reading = work_->reader.options();
     WriteArchiveFile(folder_.unfinished().KeptCheckpoint(
-                         work_->reader.options().first_frame + done_),
+                         reading.first_frame + done_ * reading.frame_step),
                      kCheckpointVersion,
                      [&](ArchiveWriter* archive) { SerializeState(archive); });
   }

@@ -118,7 +118,12 @@ NamedValues InputParts(const ImageFolderReader& reader) {
     hash.Add(NumberText(pair.depth.timestamp));
   }
   const ContentCache cache(UserCacheFolder());
-  hash.Add(cache.HashOfFiles(reader.folder(), files));
+  // A file that holds all is one file.
+  const fs::path sequence = reader.folder();
+  hash.Add(fs::is_regular_file(sequence)
+               ? cache.HashOfFiles(sequence.parent_path().string(),
+                                   {sequence.filename().string()})
+               : cache.HashOfFiles(reader.folder(), files));
   parts["input.frame_count"] = std::to_string(reader.size());
   parts["input.frames"] = hash.Hex();
   const Calibration& used = reader.calibration();
@@ -131,6 +136,10 @@ NamedValues InputParts(const ImageFolderReader& reader) {
   parts["input.camera"] = camera;
   parts["input.color_camera"] =
       used.color ? ToText(*used.color) : reader.options().color_camera;
+  if (!used.lens.IsNone()) parts["input.lens"] = used.lens.Text();
+  if (used.color && !used.color_lens.IsNone()) {
+    parts["input.color_lens"] = used.color_lens.Text();
+  }
   return parts;
 }
 

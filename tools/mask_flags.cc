@@ -15,6 +15,7 @@
 #include "splitfusion/lib/segmentation/class_names.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
 #include "splitfusion/lib/segmentation/recording_segmenter.h"
+#include "splitfusion/lib/segmentation/undistorting_segmenter.h"
 
 DEFINE_string(masks, "auto",
               "A folder, none, or auto (--model, or beside it).");
@@ -100,14 +101,19 @@ std::shared_ptr<Segmenter> MakeFolderSegmenter(const ImageFolderReader& reader,
   const std::vector<std::string> stems = StemsWithMasks(reader, *segmenter);
   CheckMasksFit(reader, stems.size(), folder);
   for (const std::string& stem : stems) {
-    segmenter->CheckFiles(stem,
-                          {reader.camera().width, reader.camera().height});
+    segmenter->CheckFiles(stem, reader.color_size());
   }
-  if (options.split.merge_touching.empty()) return segmenter;
-  Classes known = {unnamed};
-  for (const std::string& stem : stems) known.merge(segmenter->ClassesOf(stem));
-  WarnOfUnknownClasses(options.split.merge_touching, LabelsFromFlags(), known);
-  return segmenter;
+  if (!options.split.merge_touching.empty()) {
+    Classes known = {unnamed};
+    for (const std::string& stem : stems) {
+      known.merge(segmenter->ClassesOf(stem));
+    }
+    WarnOfUnknownClasses(options.split.merge_touching, LabelsFromFlags(),
+                         known);
+  }
+  const auto undistortion = reader.color_undistortion();
+  if (!undistortion) return segmenter;
+  return std::make_shared<UndistortingSegmenter>(segmenter, undistortion);
 }
 
 }  // namespace

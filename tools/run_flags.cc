@@ -7,8 +7,8 @@
 #include <sstream>
 #include <vector>
 
+#include "camera_flags.h"
 #include "method_flags.h"
-#include "sequence_flags.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/energy/surface_energies.h"
 #include "splitfusion/lib/sequence/sensors.h"
@@ -17,49 +17,15 @@
 DEFINE_string(sensor, "kinect_v1",
               "kinect_v1, kinect_azure, realsense or ideal.");
 DEFINE_string(preset, "splitfusion", "Method, by name; see docs/presets.md.");
-DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
-DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
-DEFINE_string(color_camera, "auto",
-              "Camera of unregistered colour: FILE, auto, none.");
 DEFINE_string(trajectory, "", "TUM text of known camera poses.");
-DEFINE_bool(skip_bad_frames, false,
-            "Leave out frames whose images are missing or broken.");
 
 namespace splitfusion {
-namespace {
-
-PinholeCamera ParseIntrinsics(const std::string& text) {
-  std::stringstream stream(text);
-  PinholeCamera camera;
-  char comma[5] = {};
-  if (!(stream >> camera.fx >> comma[0] >> camera.fy >> comma[1] >> camera.cx >>
-        comma[2] >> camera.cy >> comma[3] >> camera.width >> comma[4] >>
-        camera.height) ||
-      std::string(comma, 5) != ",,,,," || !(stream >> std::ws).eof()) {
-    throw InputError("--intrinsics=" + text +
-                     ": expected fx,fy,cx,cy,width,height");
-  }
-  try {
-    camera.Check();
-  } catch (const InputError& error) {
-    throw InputError("--intrinsics=" + text + ": " + error.what());
-  }
-  return camera;
-}
-
-}  // namespace
 
 ReaderOptions ReaderOptionsFromFlags() {
-  ReaderOptions options = FramesFromFlags();
-  options.depth_scale = FLAGS_depth_scale;
-  options.skip_bad_frames = FLAGS_skip_bad_frames;
+  ReaderOptions options = ImagesFromFlags();
   options.trajectory = FLAGS_trajectory;
-  options.color_camera = FLAGS_color_camera;
   options.depth = SensorOptions(FLAGS_sensor);
   TakeDepthFlags(&options.depth);
-  if (!FLAGS_intrinsics.empty()) {
-    options.camera = ParseIntrinsics(FLAGS_intrinsics);
-  }
   options.Check();
   return options;
 }
@@ -84,9 +50,9 @@ bool IsRunFlag(const gflags::CommandLineFlagInfo& flag) {
   const std::string file =
       std::filesystem::path(flag.filename).filename().string();
   for (const char* own :
-       {"sf_run_main.cc", "run_flags.cc", "mask_flags.cc", "network_flags.cc",
-        "sequence_flags.cc", "identity_flags.cc", "method_flags.cc",
-        "method_details.cc"}) {
+       {"sf_run_main.cc", "run_flags.cc", "camera_flags.cc", "mask_flags.cc",
+        "network_flags.cc", "sequence_flags.cc", "identity_flags.cc",
+        "method_flags.cc", "method_details.cc"}) {
     if (file == own) return true;
   }
   return false;

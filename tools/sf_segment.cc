@@ -49,16 +49,19 @@ class ColorFrames {
             ResolveFormat(options.format, FLAGS_sequence, formats))),
         pairs_(format_->FindFrames(FLAGS_sequence)) {
     first_ = options.first_frame;
+    step_ = options.frame_step;
     const int all = static_cast<int>(pairs_.size());
     CheckOption(first_ < all, "first_frame", first_,
                 "less than " + std::to_string(all) + ", the number of frames");
-    const int left = all - first_;
-    end_ = first_ +
-           (options.max_frames > 0 ? std::min(left, options.max_frames) : left);
+    const int left = (all - first_ + step_ - 1) / step_;
+    count_ = options.max_frames > 0 ? std::min(left, options.max_frames) : left;
   }
 
-  int first() const { return first_; }
-  int end() const { return end_; }
+  /// Number of frames that are read.
+  int count() const { return count_; }
+
+  /// Of the i-th of them, in the sequence.
+  int IndexOf(int i) const { return first_ + i * step_; }
 
   std::string Stem(int index) const {
     return fs::path(pairs_[index].depth.file).stem().string();
@@ -79,7 +82,8 @@ class ColorFrames {
   std::unique_ptr<SequenceFormat> format_;
   std::vector<AssociatedFiles> pairs_;
   int first_ = 0;
-  int end_ = 0;
+  int step_ = 1;
+  int count_ = 0;
 };
 
 /// One pass over the sequence.
@@ -91,15 +95,16 @@ class Segmentation {
         writer_(FLAGS_output, SettingsOf(*network_)) {}
 
   void Execute() {
-    for (int index = frames_.first(); index < frames_.end(); ++index) {
+    for (int i = 0; i < frames_.count(); ++i) {
+      const int index = frames_.IndexOf(i);
       if (!IsDone(frames_.Stem(index))) Process(frames_.Read(index));
-      ShowProgress(index + 1);
+      ShowProgress(i + 1);
     }
     progress_.End();
     std::printf(
         "%d frames, %d of them now, %d instances, %.3f s a frame, peak memory "
         "%.0f MB\n",
-        frames_.end() - frames_.first(), segmented_, instances_,
+        frames_.count(), segmented_, instances_,
         segmented_ > 0 ? seconds_ / segmented_ : 0.0, PeakMemoryBytes() / 1e6);
   }
 
@@ -145,12 +150,12 @@ class Segmentation {
     return earlier_->Segment(frame);
   }
 
-  void ShowProgress(int end) {
+  void ShowProgress(int done) {
     const double a_frame =
         segmented_ > 0 ? since_start_.Seconds() / segmented_ : 0.0;
-    progress_.Show(end - frames_.first(), frames_.end() - frames_.first(),
+    progress_.Show(done, frames_.count(),
                    "frames, " + std::to_string(instances_) + " instances",
-                   a_frame * (frames_.end() - end));
+                   a_frame * (frames_.count() - done));
   }
 
   ColorFrames frames_;

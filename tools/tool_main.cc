@@ -127,7 +127,7 @@ void PrintHelp(const std::string& source, const std::string& usage) {
   std::cout << usage << Described(files[source]);
   files.erase(source);
   const bool has_more = files.erase("method_details") > 0;
-  const std::size_t many = has_more ? 7 : 20;
+  const std::size_t many = has_more ? 6 : 20;
   for (const auto& [file, flags] : files) {
     std::cout << file.substr(0, file.find('_'));
     if (flags.size() < many) {

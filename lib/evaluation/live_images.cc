@@ -15,7 +15,7 @@ void CheckSource(const RecordedRun& run) {
   if (run.sequence.empty()) {
     throw InputError(run.root + "/options.flags: no --sequence");
   }
-  if (!fs::is_directory(run.sequence)) {
+  if (!fs::exists(run.sequence)) {
     throw InputError(run.sequence +
                      ": expected the folder of the sequence that "
                      "options.flags names");
@@ -57,27 +57,23 @@ std::map<int, int> CountPixels(const cv::Mat_<std::uint16_t>& ids,
 LiveImages::LiveImages(const RecordedRun& run)
     : run_(run.root), sequence_(run.sequence), filter_(run.reading.depth) {
   CheckSource(run);
-  const ImageFolderReader reader(run.sequence, run.reading, run.formats);
-  format_ = run.formats.Make(reader.options().format);
-  calibration_ = reader.calibration();
-  files_ = reader.pairs();
+  reader_ = std::make_shared<const ImageFolderReader>(run.sequence, run.reading,
+                                                      run.formats);
 }
 
+const PinholeCamera& LiveImages::camera() const { return reader_->camera(); }
+
 cv::Mat_<float> LiveImages::Depth(const RecordedFrame& frame) const {
-  CheckOption(
-      frame.index >= 0 && static_cast<std::size_t>(frame.index) < files_.size(),
-      sequence_ + ": frame", frame.index,
-      "one of its " + std::to_string(files_.size()));
-  const fs::path path = fs::path(sequence_) / files_[frame.index].depth.file;
-  const std::string stem = path.stem().string();
+  CheckOption(frame.index >= 0 && frame.index < reader_->size(),
+              sequence_ + ": frame", frame.index,
+              "one of its " + std::to_string(reader_->size()));
+  const std::string stem = reader_->Stem(frame.index);
   if (stem != frame.stem) {
     throw InputError(sequence_ + ": frame " + std::to_string(frame.index) +
                      " is '" + stem + "': expected '" + frame.stem +
                      "' as in frames.jsonl");
   }
-  const cv::Mat raw = format_->ReadDepth(path.string());
-  CheckSize(path.string(), raw.size(), camera());
-  return DepthInMetres(raw, calibration_.depth_scale);
+  return reader_->ReadDepth(frame.index);
 }
 
 cv::Mat_<float> LiveImages::FilteredDepth(const RecordedFrame& frame) const {

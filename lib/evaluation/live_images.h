@@ -6,13 +6,12 @@
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
-#include <vector>
 
 #include "splitfusion/lib/evaluation/recorded_run.h"
-#include "splitfusion/lib/sequence/calibration.h"
-#include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {
+
+class ImageFolderReader;
 
 /// STEM.png of a folder of images of ids, HxW; empty if there is no such file.
 ///
@@ -37,7 +36,7 @@ class LiveImages {
   explicit LiveImages(const RecordedRun& run);
 
   /// Intrinsics of all images.
-  const PinholeCamera& camera() const { return calibration_.camera; }
+  const PinholeCamera& camera() const;
 
   /// Depth as measured, HxW, metres, 0 = none.
   ///
@@ -57,9 +56,7 @@ class LiveImages {
   std::string run_;
   std::string sequence_;
   DepthOptions filter_;
-  std::shared_ptr<const SequenceFormat> format_;
-  Calibration calibration_;
-  std::vector<AssociatedFiles> files_;
+  std::shared_ptr<const ImageFolderReader> reader_;
 };
 
 }  // namespace splitfusion

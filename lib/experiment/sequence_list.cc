@@ -1,9 +1,11 @@
 #include "splitfusion/lib/experiment/sequence_list.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/text_file.h"
+#include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {
 namespace {
@@ -31,6 +33,15 @@ std::string FindGroundTruth(const std::string& ground_truth,
   return "";
 }
 
+/// Whether a file is a sequence itself, and no list of them.
+bool IsSequenceFile(const std::string& path) {
+  const FormatRegistry formats = BuiltinFormats();
+  const std::vector<std::string> names = formats.names();
+  return std::any_of(names.begin(), names.end(), [&](const auto& name) {
+    return formats.Make(name)->Recognises(path);
+  });
+}
+
 }  // namespace
 
 SequenceEntry MakeSequence(const std::string& folder,
@@ -38,8 +49,9 @@ SequenceEntry MakeSequence(const std::string& folder,
                            const std::string& root) {
   const fs::path path =
       fs::absolute(fs::path(root) / folder).lexically_normal();
-  if (!fs::is_directory(path)) {
-    throw InputError(folder + ": not found; expected a sequence folder");
+  if (!fs::is_directory(path) && !fs::is_regular_file(path)) {
+    throw InputError(folder +
+                     ": not found; expected a sequence folder, or its file");
   }
   const fs::path whole = path.has_filename() ? path : path.parent_path();
   SequenceEntry entry;
@@ -59,7 +71,7 @@ std::vector<SequenceEntry> ReadSequences(const std::string& text,
   std::vector<SequenceEntry> sequences;
   for (const std::string& quoted : SplitOutsideQuotes(text, ',')) {
     const std::string part = Unquoted(quoted);
-    if (!fs::is_regular_file(part)) {
+    if (!fs::is_regular_file(part) || IsSequenceFile(part)) {
       sequences.push_back(MakeSequence(part, truth, here.string()));
       continue;
     }

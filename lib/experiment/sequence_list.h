@@ -20,7 +20,8 @@ SequenceEntry MakeSequence(const std::string& folder,
                            const std::string& root);
 
 /// Sequences of a command line: folders and list files, separated by commas; a
-/// list has one folder a line, relative to the list, `#` comments.
+/// list has one folder a line, relative to the list, `#` comments. Sequences of
+/// one file, as `scene.sens`, are named like folders.
 ///
 /// @throw InputError as MakeSequence().
 std::vector<SequenceEntry> ReadSequences(const std::string& text,

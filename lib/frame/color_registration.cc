@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <vector>
 
 #include "splitfusion/lib/geometry/depth_comparison.h"
@@ -29,19 +30,53 @@ cv::Mat_<int> NearestOf(const cv::Mat_<uchar>& mask) {
   return nearest;
 }
 
-/// Least depth of what falls into each pixel of the colour image, and into its
-/// neighbours: points of a surface seen closer leave pixels between them empty.
-cv::Mat_<float> LeastDepths(const cv::Mat_<cv::Vec2f>& places,
+/// The colour camera's image plane in cells about as large as a depth pixel, so
+/// that the points of a surface leave no cells between them empty.
+class Cells {
+ public:
+  Cells(const PinholeCamera& depth_camera, const ColorCamera& color_camera) {
+    const cv::Size depth_size(depth_camera.width, depth_camera.height);
+    const cv::Size size = color_camera.SizeBeside(depth_size);
+    size_ = depth_size;
+    if (size == depth_size) return;
+    scale_ = static_cast<float>(depth_camera.fx / color_camera.fx);
+    size_.width = cvCeil(static_cast<float>(size.width) * scale_);
+    size_.height = cvCeil(static_cast<float>(size.height) * scale_);
+  }
+
+  const cv::Size& size() const { return size_; }
+
+  /// Where a place of the colour image is; none beyond it.
+  std::optional<cv::Point> At(const cv::Vec2f& place) const {
+    const float u = place[0] * scale_, v = place[1] * scale_;
+    // Also false for what is not a number.
+    const bool is_inside = u >= -0.5f && v >= -0.5f &&
+                           u < static_cast<float>(size_.width) &&
+                           v < static_cast<float>(size_.height);
+    if (!is_inside) return std::nullopt;
+    const cv::Point cell(cvRound(u), cvRound(v));
+    if (!cv::Rect({0, 0}, size_).contains(cell)) return std::nullopt;
+    return cell;
+  }
+
+ private:
+  cv::Size size_;
+  float scale_ = 1;
+};
+
+/// Least depth of what falls into each cell and into its neighbours: a surface
+/// seen closer leaves some empty nevertheless.
+cv::Mat_<float> LeastDepths(const Cells& cells,
+                            const cv::Mat_<cv::Vec2f>& places,
                             const cv::Mat_<float>& depth,
                             const cv::Mat_<uchar>& measured) {
   constexpr float kFar = std::numeric_limits<float>::max();  // Maths.
-  cv::Mat_<float> least(depth.size(), kFar);
+  cv::Mat_<float> least(cells.size(), kFar);
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 0; u < depth.cols; ++u) {
       if (measured(v, u) == 0) continue;
-      const int x = cvRound(places(v, u)[0]), y = cvRound(places(v, u)[1]);
-      if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
-      least(y, x) = std::min(least(y, x), depth(v, u));
+      const std::optional<cv::Point> cell = cells.At(places(v, u));
+      if (cell) least(*cell) = std::min(least(*cell), depth(v, u));
     }
   }
   cv::Mat_<float> around;
@@ -95,14 +130,16 @@ cv::Mat_<cv::Vec2f> ColorPlaces(const PinholeCamera& depth_camera,
                       fy * point.y() / point.z() + cy};
     }
   });
-  const cv::Mat_<float> least = LeastDepths(places, color_depth, measured);
+  const Cells cells(depth_camera, color_camera);
+  const cv::Mat_<float> least =
+      LeastDepths(cells, places, color_depth, measured);
   cv::Mat_<uchar> seen(depth.size(), uchar(255));
   tbb::parallel_for(0, depth.rows, [&](int v) {
     for (int u = 0; u < depth.cols; ++u) {
-      const int x = cvRound(places(v, u)[0]), y = cvRound(places(v, u)[1]);
-      if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
+      const std::optional<cv::Point> cell = cells.At(places(v, u));
+      if (!cell) continue;
       const float z = color_depth(v, u);
-      if (least(y, x) < z - kOneBody.At(z, depth_camera.noise)) seen(v, u) = 0;
+      if (least(*cell) < z - kOneBody.At(z, depth_camera.noise)) seen(v, u) = 0;
     }
   });
   cv::Mat_<cv::Vec2f> result = places.clone();

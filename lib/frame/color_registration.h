@@ -8,11 +8,11 @@
 
 namespace splitfusion {
 
-/// Where the colour image shows what the depth pixels show: HxW, (u, v) in the
-/// colour image. Pixels without depth take the depth of the nearest one that
-/// has some; pixels that the colour camera does not see, as something is before
-/// them (z-buffer), the place of the nearest one in their row or column that it
-/// does see and that is not nearer.
+/// Where the colour image, which may have another size, shows what the depth
+/// pixels show: HxW, (u, v) in the colour image. Pixels without depth take the
+/// depth of the nearest one that has some; pixels that the colour camera does
+/// not see, as something is before them (z-buffer), the place of the nearest
+/// one in their row or column that it does see and that is not nearer.
 ///
 /// `depth`: HxW, metres, 0 = none, of `depth_camera`.
 cv::Mat_<cv::Vec2f> ColorPlaces(const PinholeCamera& depth_camera,

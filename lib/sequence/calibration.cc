@@ -7,6 +7,7 @@
 #include <iomanip>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
@@ -23,19 +24,40 @@ void CheckCalibration(const std::string& path, const Calibration& calibration) {
   }
 }
 
-/// The keys of camera.txt.
+using KeyValues = std::map<std::string, double>;
+
+/// The keys that camera.txt must have.
 constexpr std::array<const char*, 7> kKeys = {
     "width", "height", "fx", "fy", "cx", "cy", "depth_scale"};
+/// Those of a colour camera, after kColorPrefix: that it must have, and may.
+constexpr std::array<const char*, 6> kColorKeys = {"width", "height", "fx",
+                                                   "fy",    "cx",     "cy"};
+constexpr std::array<const char*, 7> kPoseKeys = {"tx", "ty", "tz", "qx",
+                                                  "qy", "qz", "qw"};
+const std::string kColorPrefix = "color_";
+
+template <typename Keys>
+bool HasKey(const Keys& keys, const std::string& key) {
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+bool IsKnownKey(const std::string& key) {
+  if (HasKey(kKeys, key) || HasKey(kDistortionKeys, key)) return true;
+  if (key.rfind(kColorPrefix, 0) != 0) return false;
+  const std::string rest = key.substr(kColorPrefix.size());
+  return HasKey(kColorKeys, rest) || HasKey(kPoseKeys, rest) ||
+         HasKey(kDistortionKeys, rest);
+}
 
 std::string KeyList() {
   std::string list;
   for (const char* key : kKeys)
     list += (list.empty() ? "" : ", ") + std::string(key);
-  return list;
+  return list + ", k1 to k6, p1, p2";
 }
 
-std::map<std::string, double> ReadKeys(const std::string& path) {
-  std::map<std::string, double> values;
+KeyValues ReadKeys(const std::string& path) {
+  KeyValues values;
   for (const TextLine& line : ReadTextLines(path, /*cut_comments=*/true)) {
     std::istringstream words(line.text);
     std::string key;
@@ -43,22 +65,86 @@ std::map<std::string, double> ReadKeys(const std::string& path) {
     if (!(words >> key >> value) || !(words >> std::ws).eof()) {
       line.Refuse("'key value', the value a number");
     }
-    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end() ||
-        !values.emplace(key, value).second) {
+    if (!IsKnownKey(key) || !values.emplace(key, value).second) {
       throw InputError(line.place + ": key '" + key + "': expected " +
-                       KeyList() + ", each once");
+                       KeyList() + ", or color_... of them, each once");
     }
   }
   return values;
 }
 
-double Require(const std::string& path,
-               const std::map<std::string, double>& values,
+double Require(const std::string& path, const KeyValues& values,
                const std::string& key) {
   const auto found = values.find(key);
   if (found != values.end()) return found->second;
   throw InputError(path + ": no line '" + key + " VALUE': expected " +
                    KeyList());
+}
+
+double ValueOr(const KeyValues& values, const std::string& key,
+               double otherwise) {
+  const auto found = values.find(key);
+  return found == values.end() ? otherwise : found->second;
+}
+
+LensDistortion LensOfKeys(const KeyValues& values, const std::string& prefix) {
+  LensDistortion lens;
+  for (std::size_t i = 0; i < kDistortionKeys.size(); ++i) {
+    lens.coefficients[i] = ValueOr(values, prefix + kDistortionKeys[i], 0);
+  }
+  return lens;
+}
+
+/// The colour camera of camera.txt, if there is any key of one.
+std::optional<ColorCamera> ColorCameraOfKeys(const std::string& path,
+                                             const KeyValues& values) {
+  const auto first = values.lower_bound(kColorPrefix);
+  if (first == values.end() || first->first.rfind(kColorPrefix, 0) != 0) {
+    return std::nullopt;
+  }
+  const auto require = [&](const char* key) {
+    return Require(path, values, kColorPrefix + key);
+  };
+  const auto value = [&](const char* key, double otherwise) {
+    return ValueOr(values, kColorPrefix + key, otherwise);
+  };
+  ColorCamera color;
+  color.width = static_cast<int>(require("width"));
+  color.height = static_cast<int>(require("height"));
+  color.fx = require("fx");
+  color.fy = require("fy");
+  color.cx = require("cx");
+  color.cy = require("cy");
+  const Eigen::Quaterniond q(value("qw", 1), value("qx", 0), value("qy", 0),
+                             value("qz", 0));
+  CheckOption(q.norm() > 0, path + ": quaternion of the colour camera",
+              q.norm(), "one that is not 0");
+  color.color_from_depth.linear() = q.normalized().toRotationMatrix();
+  color.color_from_depth.translation() << value("tx", 0), value("ty", 0),
+      value("tz", 0);
+  return color;
+}
+
+void WriteLensKeys(const std::string& prefix, const LensDistortion& lens,
+                   std::ostream& out) {
+  for (std::size_t i = 0; i < kDistortionKeys.size(); ++i) {
+    if (lens.coefficients[i] == 0) continue;
+    out << prefix << kDistortionKeys[i] << ' ' << lens.coefficients[i] << '\n';
+  }
+}
+
+void WriteColorKeys(const ColorCamera& color, std::ostream& out) {
+  const Eigen::Vector3d t = color.color_from_depth.translation();
+  const Eigen::Quaterniond q(color.color_from_depth.linear());
+  const std::pair<const char*, double> values[] = {
+      {"fx", color.fx}, {"fy", color.fy}, {"cx", color.cx}, {"cy", color.cy},
+      {"tx", t.x()},    {"ty", t.y()},    {"tz", t.z()},    {"qx", q.x()},
+      {"qy", q.y()},    {"qz", q.z()},    {"qw", q.w()}};
+  out << kColorPrefix << "width " << color.width << '\n'
+      << kColorPrefix << "height " << color.height << '\n';
+  for (const auto& [key, value] : values) {
+    out << kColorPrefix << key << ' ' << value << '\n';
+  }
 }
 
 }  // namespace
@@ -67,6 +153,9 @@ void Calibration::Check() const {
   camera.Check();
   CheckOption(std::isfinite(depth_scale) && depth_scale > 0, "depth scale",
               depth_scale, "positive units per metre (TUM: 5000)");
+  if (color) color->Check();
+  lens.Check();
+  color_lens.Check();
 }
 
 Calibration ReadCalibrationLine(const std::string& path) {
@@ -97,7 +186,7 @@ void WriteCalibration(const std::string& path, const Calibration& calibration) {
 }
 
 Calibration ReadCalibrationKeys(const std::string& path) {
-  const std::map<std::string, double> values = ReadKeys(path);
+  const KeyValues values = ReadKeys(path);
   Calibration result;
   result.camera.width = static_cast<int>(Require(path, values, "width"));
   result.camera.height = static_cast<int>(Require(path, values, "height"));
@@ -106,8 +195,26 @@ Calibration ReadCalibrationKeys(const std::string& path) {
   result.camera.cx = Require(path, values, "cx");
   result.camera.cy = Require(path, values, "cy");
   result.depth_scale = Require(path, values, "depth_scale");
+  result.lens = LensOfKeys(values, "");
+  result.color = ColorCameraOfKeys(path, values);
+  result.color_lens = LensOfKeys(values, kColorPrefix);
   CheckCalibration(path, result);
   return result;
+}
+
+void WriteCalibrationKeys(const std::string& path,
+                          const Calibration& calibration) {
+  const PinholeCamera& camera = calibration.camera;
+  WriteFileAtomically(path, [&](std::ostream& out) {
+    out << std::setprecision(17) << "width " << camera.width << "\nheight "
+        << camera.height << "\nfx " << camera.fx << "\nfy " << camera.fy
+        << "\ncx " << camera.cx << "\ncy " << camera.cy << "\ndepth_scale "
+        << calibration.depth_scale << '\n';
+    WriteLensKeys("", calibration.lens, out);
+    if (!calibration.color) return;
+    WriteColorKeys(*calibration.color, out);
+    WriteLensKeys(kColorPrefix, calibration.color_lens, out);
+  });
 }
 
 std::optional<Calibration> FindCalibration(const std::string& folder) {

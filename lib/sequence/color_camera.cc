@@ -30,6 +30,10 @@ void ColorCamera::Check() const {
               "a focal length > 0 in pixels");
   CheckOption(std::isfinite(cx), "cx of the colour camera", cx, "pixels");
   CheckOption(std::isfinite(cy), "cy of the colour camera", cy, "pixels");
+  CheckOption((width > 0) == (height > 0) && width >= 0 && height >= 0,
+              "size of the colour camera",
+              std::to_string(width) + "x" + std::to_string(height),
+              "two positive numbers of pixels, or none");
   CheckOption(color_from_depth.matrix().allFinite(),
               "pose of the colour camera", "nan", "finite numbers");
   const double way = color_from_depth.translation().norm();
@@ -41,7 +45,8 @@ void ColorCamera::Check() const {
 }
 
 ColorCamera ReadColorCamera(const std::string& path) {
-  const std::string expected = "'fx fy cx cy tx ty tz qx qy qz qw'";
+  const std::string expected =
+      "'fx fy cx cy tx ty tz qx qy qz qw', or with 'width height' after it";
   const std::vector<TextLine> lines =
       ReadTextLines(path, /*cut_comments=*/true);
   if (lines.empty()) throw InputError(path + ": no line: expected " + expected);
@@ -50,8 +55,11 @@ ColorCamera ReadColorCamera(const std::string& path) {
   Eigen::Quaterniond q;
   std::istringstream words(lines[0].text);
   if (!(words >> camera.fx >> camera.fy >> camera.cx >> camera.cy >> t.x() >>
-        t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w()) ||
-      !(words >> std::ws).eof()) {
+        t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w())) {
+    lines[0].Refuse(expected);
+  }
+  if (!(words >> std::ws).eof() && (!(words >> camera.width >> camera.height) ||
+                                    !(words >> std::ws).eof())) {
     lines[0].Refuse(expected);
   }
   if (lines.size() > 1) lines[1].Refuse("one line " + expected);
@@ -74,13 +82,15 @@ std::string ToText(const ColorCamera& camera) {
   text << std::setprecision(17) << camera.fx << ' ' << camera.fy << ' '
        << camera.cx << ' ' << camera.cy << ' ' << t.x() << ' ' << t.y() << ' '
        << t.z() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w();
+  if (camera.width > 0) text << ' ' << camera.width << ' ' << camera.height;
   return text.str();
 }
 
 void WriteColorCamera(const std::string& path, const ColorCamera& camera) {
   WriteFileAtomically(path, [&](std::ostream& out) {
     out << "# colour camera: fx fy cx cy (pixels), then colour from depth: tx "
-           "ty tz (metres) qx qy qz qw\n"
+           "ty tz (metres) qx qy qz qw, then the size if it is not that of "
+           "the depth\n"
         << ToText(camera) << '\n';
   });
 }

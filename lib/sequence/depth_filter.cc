@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/option_list.h"
@@ -53,6 +54,12 @@ void DepthOptions::Check() const { CheckOptions(*this); }
 
 cv::Mat DepthInMetres(const cv::Mat& raw, double depth_scale) {
   cv::Mat depth;
+  if (raw.depth() == CV_32F) {
+    // Not `depth <= 0`, which is false for what is not a number.
+    cv::Mat good = (raw > 0) & (raw <= std::numeric_limits<float>::max());
+    raw.copyTo(depth, good);
+    return depth;
+  }
   raw.convertTo(depth, CV_32F, 1 / depth_scale);
   return depth;
 }

@@ -21,7 +21,8 @@ struct DepthOptions {
 };
 
 /// Metres of an HxW 16UC1 depth image with `depth_scale` units a metre, as
-/// 32FC1; 0 stays 0.
+/// 32FC1; 0 stays 0. An image of 32FC1 is in metres already; what is not a
+/// positive number in it becomes 0.
 cv::Mat DepthInMetres(const cv::Mat& raw, double depth_scale);
 
 /// Sets measurements outside of [min_depth, max_depth] (metres) to 0.

@@ -19,24 +19,9 @@ std::vector<std::uint8_t> ReadBytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The decoders fill a truncated picture with grey and only print a warning,
-/// wait for what is no file, and take all memory for a size that is absurd:
-/// the header is looked at first.
 cv::Mat Decode(const std::string& path, int flags) {
   ReadImageHeader(path);
-  const std::vector<std::uint8_t> bytes = ReadBytes(path);
-  cv::Mat image;
-  try {
-    image = cv::imdecode(bytes, flags);
-  } catch (const cv::Exception&) {
-    image.release();
-  }
-  if (image.empty()) {
-    throw InputError(path + ": " + std::to_string(bytes.size()) +
-                     " bytes that are no image or a truncated one: expected a "
-                     "complete png or jpg");
-  }
-  return image;
+  return DecodeImage(path, ReadBytes(path), flags);
 }
 
 [[noreturn]] void ThrowFormat(const std::string& path,
@@ -49,7 +34,8 @@ cv::Mat Decode(const std::string& path, int flags) {
 
 /// @throw InputError unless it is a depth image.
 void CheckIsDepth(const std::string& path, const ImageHeader& header) {
-  if (header.bits == 16 && header.channels == 1) return;
+  const bool has_bits = header.bits == 16 || header.bits == 32;
+  if (has_bits && header.channels == 1) return;
   ThrowFormat(path, header, "a depth image of 16 bit, 1 channel");
 }
 
@@ -66,6 +52,22 @@ ImageHeader HeaderOf(const cv::Mat& image) {
 
 }  // namespace
 
+cv::Mat DecodeImage(const std::string& path,
+                    const std::vector<std::uint8_t>& bytes, int flags) {
+  cv::Mat image;
+  try {
+    image = cv::imdecode(bytes, flags);
+  } catch (const cv::Exception&) {
+    image.release();
+  }
+  if (image.empty()) {
+    throw InputError(path + ": " + std::to_string(bytes.size()) +
+                     " bytes that are no image or a truncated one: expected a "
+                     "complete png or jpg");
+  }
+  return image;
+}
+
 cv::Mat ReadColorImage(const std::string& path) {
   // The depth knows nothing of an orientation.
   return Decode(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
@@ -74,7 +76,11 @@ cv::Mat ReadColorImage(const std::string& path) {
 cv::Mat ReadDepthImage(const std::string& path) {
   cv::Mat image = Decode(path, cv::IMREAD_UNCHANGED);
   CheckIsDepth(path, HeaderOf(image));
-  return image;
+  // Integers of 32 bit are refused as well: nothing says what they mean.
+  if (image.depth() == CV_16U || image.depth() == CV_32F) return image;
+  throw InputError(path +
+                   ": image of signed integers: expected a depth image "
+                   "of 16 bit, or of floating-point numbers");
 }
 
 cv::Mat ReadLabelImage(const std::string& path) {

@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_LIB_SEQUENCE_IMAGE_FILE_H_
 #define SPLITFUSION_LIB_SEQUENCE_IMAGE_FILE_H_
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -16,9 +17,10 @@ namespace splitfusion {
 /// @throw InputError if the file is missing, truncated or not an image.
 cv::Mat ReadColorImage(const std::string& path);
 
-/// Reads a depth image, a 16-bit PNG of one channel, as HxW 16UC1.
+/// Reads a depth image of one channel: one of 16 bit (PNG, PGM, TIFF) as HxW
+/// 16UC1, one of floating-point numbers (TIFF, EXR) as HxW 32FC1.
 ///
-/// @throw InputError if the file is missing, truncated, or not 16 bit.
+/// @throw InputError if the file is missing, truncated, or neither of them.
 cv::Mat ReadDepthImage(const std::string& path);
 
 /// Reads a label or mask image, 8 or 16 bit, one channel, as HxW 16UC1.
@@ -26,9 +28,18 @@ cv::Mat ReadDepthImage(const std::string& path);
 /// @throw InputError if the file is missing, truncated, or has channels.
 cv::Mat ReadLabelImage(const std::string& path);
 
+/// What a file of `bytes` bytes reads as; `path` names it in messages. The
+/// decoders fill a truncated picture with grey and only print a warning, wait
+/// for what is no file, and take all memory for a size that is absurd: look at
+/// the header first, ReadImageHeader().
+///
+/// @throw InputError if it is not an image.
+cv::Mat DecodeImage(const std::string& path,
+                    const std::vector<std::uint8_t>& bytes, int flags);
+
 /// Header of a depth image; see ReadImageHeader().
 ///
-/// @throw InputError as that one, and if it is not 16 bit, 1 channel.
+/// @throw InputError as that one, and if it is not 16 or 32 bit, 1 channel.
 std::optional<ImageHeader> ReadDepthHeader(const std::string& path);
 
 /// Header of a label or mask image; see ReadImageHeader().

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <utility>
 
 #include "splitfusion/lib/base/error.h"
@@ -30,14 +29,13 @@ std::optional<ColorCamera> ResolveColorCamera(const std::string& folder,
   return ReadColorCamera(file.string());
 }
 
-/// The values that the format finds, each replaced by the option if given.
+/// The values that the format finds, each replaced by the option if given. The
+/// lens stays that of the files.
 Calibration ResolveCalibration(const std::string& folder,
                                const SequenceFormat& format,
                                const ReaderOptions& options) {
-  const bool complete = options.camera && options.depth_scale > 0;
-  std::optional<Calibration> file;
-  if (!complete) file = format.FindCalibration(folder);
-  if (!complete && !file) {
+  const std::optional<Calibration> file = format.FindCalibration(folder);
+  if (!file && !(options.camera && options.depth_scale > 0)) {
     throw InputError(folder +
                      ": neither calibration.txt nor camera.txt found: expected "
                      "one of them, or intrinsics and depth scale as options");
@@ -46,9 +44,22 @@ Calibration ResolveCalibration(const std::string& folder,
   if (options.camera) calibration.camera = *options.camera;
   calibration.camera.noise = options.depth.noise;
   if (options.depth_scale > 0) calibration.depth_scale = options.depth_scale;
-  calibration.color = ResolveColorCamera(folder, options.color_camera);
-  calibration.Check();
+  const std::optional<ColorCamera> beside =
+      ResolveColorCamera(folder, options.color_camera);
+  if (beside || options.color_camera == "none") calibration.color = beside;
   return calibration;
+}
+
+/// Of the lens of a camera, if it has distortion.
+std::shared_ptr<const Undistortion> MakeUndistortion(
+    const PinholeCamera& camera, const LensDistortion& lens) {
+  if (lens.IsNone()) return nullptr;
+  return std::make_shared<const Undistortion>(camera, lens);
+}
+
+/// The colour camera for itself.
+PinholeCamera PinholeOf(const ColorCamera& color, const cv::Size& size) {
+  return {size.width, size.height, color.fx, color.fy, color.cx, color.cy};
 }
 
 void CheckSize(const std::string& path, const cv::Size& size,
@@ -72,6 +83,11 @@ std::vector<AssociatedFiles> SelectFrames(std::vector<AssociatedFiles> pairs,
       options.first_frame < count, "first_frame", options.first_frame,
       "less than the " + std::to_string(count) + " frames of the sequence");
   pairs.erase(pairs.begin(), pairs.begin() + options.first_frame);
+  std::vector<AssociatedFiles> kept;
+  for (std::size_t i = 0; i < pairs.size(); i += options.frame_step) {
+    kept.push_back(std::move(pairs[i]));
+  }
+  pairs = std::move(kept);
   if (options.max_frames > 0 &&
       options.max_frames < static_cast<int>(pairs.size())) {
     pairs.resize(options.max_frames);
@@ -83,6 +99,7 @@ std::vector<AssociatedFiles> SelectFrames(std::vector<AssociatedFiles> pairs,
 
 void ReaderOptions::Check() const {
   CheckOption(first_frame >= 0, "first_frame", first_frame, "an index >= 0");
+  CheckOption(frame_step >= 1, "frame_step", frame_step, "a number >= 1");
   CheckOption(max_frames >= 0, "max_frames", max_frames,
               "a number > 0, or 0 for all");
   CheckOption(std::isfinite(depth_scale) && depth_scale >= 0, "depth_scale",
@@ -100,10 +117,36 @@ ImageFolderReader::ImageFolderReader(const std::string& folder,
   format_ = formats.Make(options_.format);
   pairs_ = SelectFrames(format_->FindFrames(folder_), options_);
   indices_.resize(pairs_.size());
-  std::iota(indices_.begin(), indices_.end(), options_.first_frame);
+  for (std::size_t i = 0; i < indices_.size(); ++i) {
+    indices_[i] =
+        options_.first_frame + static_cast<int>(i) * options_.frame_step;
+  }
   calibration_ = ResolveCalibration(folder_, *format_, options_);
+  CompleteCalibration();
   if (options_.skip_bad_frames) SkipBadFrames();
   if (!options_.trajectory.empty()) FindPoses();
+}
+
+void ImageFolderReader::CompleteCalibration() {
+  PinholeCamera& camera = calibration_.camera;
+  if (camera.width == 0 && camera.height == 0) {
+    const auto header = format_->ReadDepthHeader(DepthPath(0));
+    const cv::Size size =
+        header ? header->size : format_->ReadDepth(DepthPath(0)).size();
+    camera.width = size.width;
+    camera.height = size.height;
+  }
+  if (calibration_.depth_scale == 0) {
+    throw InputError(folder_ +
+                     ": no depth scale beside the intrinsics: expected "
+                     "depth_scale as an option, units in a metre");
+  }
+  calibration_.Check();
+  depth_undistortion_ = MakeUndistortion(camera, calibration_.lens);
+  color_undistortion_ = depth_undistortion_;
+  if (!calibration_.color) return;
+  color_undistortion_ = MakeUndistortion(
+      PinholeOf(*calibration_.color, color_size()), calibration_.color_lens);
 }
 
 void ImageFolderReader::SkipBadFrames() {
@@ -155,11 +198,23 @@ cv::Size ImageFolderReader::ExpectedSize() const {
   return {camera().width, camera().height};
 }
 
+cv::Size ImageFolderReader::color_size() const {
+  if (!calibration_.color) return ExpectedSize();
+  return calibration_.color->SizeBeside(ExpectedSize());
+}
+
+std::string ImageFolderReader::ColorPath(int i) const {
+  return (fs::path(folder_) / pairs_[i].color.file).string();
+}
+
+std::string ImageFolderReader::DepthPath(int i) const {
+  return (fs::path(folder_) / pairs_[i].depth.file).string();
+}
+
 void ImageFolderReader::CheckFiles(int i) const {
-  const std::string color = (fs::path(folder_) / pairs_[i].color.file).string();
-  const std::string depth = (fs::path(folder_) / pairs_[i].depth.file).string();
-  CheckSize(color, ReadImageHeader(color), ExpectedSize());
-  CheckSize(depth, ReadDepthHeader(depth), ExpectedSize());
+  const std::string color = ColorPath(i), depth = DepthPath(i);
+  CheckSize(color, format_->ReadColorHeader(color), color_size());
+  CheckSize(depth, format_->ReadDepthHeader(depth), ExpectedSize());
 }
 
 std::vector<BadFrame> ImageFolderReader::FindBadFrames() const {
@@ -208,24 +263,36 @@ std::string ImageFolderReader::ColorStem(int i) const {
   return fs::path(pairs_.at(i).color.file).stem().string();
 }
 
+cv::Mat ImageFolderReader::ReadColor(int i) const {
+  const std::string path = ColorPath(i);
+  const cv::Mat color = format_->ReadColor(path);
+  CheckSize(path, color.size(), color_size());
+  return color_undistortion_ ? color_undistortion_->Color(color) : color;
+}
+
+cv::Mat_<float> ImageFolderReader::ReadDepth(int i) const {
+  const std::string path = DepthPath(i);
+  const cv::Mat raw = format_->ReadDepth(path);
+  CheckSize(path, raw.size(), ExpectedSize());
+  const cv::Mat_<float> depth = DepthInMetres(raw, calibration_.depth_scale);
+  return depth_undistortion_ ? depth_undistortion_->Depth(depth) : depth;
+}
+
+Trajectory ImageFolderReader::FindSequencePoses() const {
+  return format_->FindPoses(folder_, pairs_);
+}
+
 Frame ImageFolderReader::Read(int i) const {
   CheckFiles(i);
-  const AssociatedFiles& pair = pairs_[i];
-  const fs::path color_path = fs::path(folder_) / pair.color.file;
-  const fs::path depth_path = fs::path(folder_) / pair.depth.file;
   Frame frame;
   frame.index = indices_[i];
-  frame.timestamp = pair.depth.timestamp;
+  frame.timestamp = pairs_[i].depth.timestamp;
   const auto pose = poses_.find(frame.index);
   if (pose != poses_.end()) frame.world_from_camera = pose->second;
-  frame.stem = depth_path.stem().string();
-  frame.color_stem = color_path.stem().string();
-  frame.color = format_->ReadColor(color_path.string());
-  CheckSize(color_path.string(), frame.color.size(), ExpectedSize());
-  const cv::Mat raw = format_->ReadDepth(depth_path.string());
-  CheckSize(depth_path.string(), raw.size(), ExpectedSize());
-  frame.depth =
-      FilterDepth(DepthInMetres(raw, calibration_.depth_scale), options_.depth);
+  frame.stem = Stem(i);
+  frame.color_stem = ColorStem(i);
+  frame.color = ReadColor(i);
+  frame.depth = FilterDepth(ReadDepth(i), options_.depth);
   return frame;
 }
 

@@ -23,12 +23,14 @@ struct BadFrame {
   std::string reason;  ///< One line that names the file.
 };
 
-/// Reads a sequence of image files, laid out in one of the known formats.
+/// Reads a sequence of image files, laid out in one of the known formats. What
+/// it gives has no lens distortion.
 class ImageFolderReader {
  public:
-  /// Finds frames and calibration of `folder`; images are read one by one in
-  /// Next(). With `skip_bad_frames` FindBadFrames() are left out. `formats`:
-  /// what the options may name, not kept.
+  /// Finds frames and calibration of `folder`, which may be a file if the
+  /// format is one of files; images are read one by one in Next(). With
+  /// `skip_bad_frames` FindBadFrames() are left out. `formats`: what the
+  /// options may name, not kept.
   ///
   /// @throw InputError if the format is not known, if a list or the calibration
   ///     is missing or broken, or if no frame is left.
@@ -38,6 +40,13 @@ class ImageFolderReader {
 
   /// Intrinsics of every frame.
   const PinholeCamera& camera() const { return calibration_.camera; }
+  /// Size of the colour images, that of a colour camera apart if there is one.
+  cv::Size color_size() const;
+  /// Takes the distortion out of what was made from colour files as they are,
+  /// such as masks; null if they have none.
+  std::shared_ptr<const Undistortion> color_undistortion() const {
+    return color_undistortion_;
+  }
   /// Number of frames that Next() gives in all; fewer if `skip_bad_frames` and
   /// images turn out to be broken in Next().
   int size() const;
@@ -50,6 +59,22 @@ class ImageFolderReader {
   ///
   /// @throw InputError on a missing or broken image; names the file.
   Frame Read(int i) const;
+
+  /// Colour of the i-th frame, color_size(), 8UC3, BGR.
+  ///
+  /// @throw InputError on a missing or broken image; names the file.
+  cv::Mat ReadColor(int i) const;
+
+  /// Depth of the i-th frame, HxW, metres, 0 = none, unfiltered.
+  ///
+  /// @throw InputError on a missing or broken image; names the file.
+  cv::Mat_<float> ReadDepth(int i) const;
+
+  /// Poses of the depth camera that come with the sequence, see
+  /// SequenceFormat::FindPoses(); of all of its frames, or near them.
+  ///
+  /// @throw InputError if a file of them is broken.
+  Trajectory FindSequencePoses() const;
 
   /// Looks at the files of all frames, without decoding them: that they are
   /// there, whole as far as their headers and ends show, and of the right size
@@ -82,11 +107,15 @@ class ImageFolderReader {
   const std::string& folder() const { return folder_; }
   /// How it is read, as it was given, but for the format that "auto" found.
   const ReaderOptions& options() const { return options_; }
-  /// Intrinsics, depth scale and colour camera in use.
+  /// Intrinsics, depth scale, colour camera and lenses in use.
   const Calibration& calibration() const { return calibration_; }
 
  private:
   cv::Size ExpectedSize() const;
+  std::string ColorPath(int i) const;
+  std::string DepthPath(int i) const;
+  /// Fills in what the calibration lacks, and checks it.
+  void CompleteCalibration();
   /// @throw InputError if the images of the i-th frame cannot be used.
   void CheckFiles(int i) const;
   std::optional<Frame> ReadOrSkip();
@@ -101,6 +130,8 @@ class ImageFolderReader {
   ReaderOptions options_;
   std::shared_ptr<const SequenceFormat> format_;
   Calibration calibration_;
+  std::shared_ptr<const Undistortion> color_undistortion_;
+  std::shared_ptr<const Undistortion> depth_undistortion_;
   std::vector<AssociatedFiles> pairs_;  // Frames to be read.
   std::vector<int> indices_;            // Of pairs_, in the sequence.
   std::map<int, Rigid3d> poses_;        // Given ones, by index.

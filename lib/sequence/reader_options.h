@@ -13,6 +13,7 @@ namespace splitfusion {
 struct ReaderOptions {
   std::string format = "auto";  ///< See ResolveFormat().
   int first_frame = 0;          ///< Frames before it are skipped; indices stay.
+  int frame_step = 1;           ///< Of that every so many; indices stay.
   int max_frames = 0;           ///< Frames read at most; 0 = all.
   /// Replaces the intrinsics that the format finds.
   std::optional<PinholeCamera> camera;
@@ -23,7 +24,7 @@ struct ReaderOptions {
   bool skip_bad_frames = false;
   /// Where colour images are from that are not registered to the depth images:
   /// a file of ReadColorCamera(); "auto": `color_camera.txt` of the sequence if
-  /// there is one; "none": they are registered.
+  /// there is one, or else what the format finds; "none": they are registered.
   std::string color_camera = "auto";
   /// TUM text file of known poses, one of every frame; empty: none.
   std::string trajectory;

@@ -9,6 +9,8 @@
 
 #include "splitfusion/lib/base/registry.h"
 #include "splitfusion/lib/sequence/association_list.h"
+#include "splitfusion/lib/sequence/image_header.h"
+#include "splitfusion/lib/sequence/trajectory.h"
 
 namespace splitfusion {
 
@@ -16,36 +18,64 @@ struct Calibration;
 
 /// The layout of a kind of data sets: where the images of a sequence are and
 /// what their pixels mean. ImageFolderReader reads by it. Thread-safe.
+///
+/// A sequence is a folder of image files; or it is a file that holds all, such
+/// as `scene.sens`. The images in that have names as if it was a folder,
+/// `scene.sens/000000.jpg`, and the format overrides what reads them.
 class SequenceFormat {
  public:
   virtual ~SequenceFormat() = default;
 
-  /// What a folder holds by which it is recognised, for messages.
+  /// What a sequence holds by which it is recognised, for messages.
   virtual std::string Files() const = 0;
 
-  /// Whether a folder looks like a sequence of this layout.
-  virtual bool Recognises(const std::string& folder) const = 0;
+  /// Whether a folder or file looks like a sequence of this layout.
+  virtual bool Recognises(const std::string& sequence) const = 0;
 
-  /// Colour and depth file of all frames, relative to the folder, in order.
+  /// Colour and depth file of all frames, relative to the sequence, in order.
   ///
   /// @throw InputError if there is none, or if a list is broken.
   virtual std::vector<AssociatedFiles> FindFrames(
-      const std::string& folder) const = 0;
+      const std::string& sequence) const = 0;
 
-  /// Intrinsics and depth scale of a sequence; empty if nothing tells. Unless
-  /// overridden that is what splitfusion::FindCalibration() finds.
+  /// Intrinsics and depth scale of a sequence; empty if nothing tells. A size
+  /// of 0 stands for that of the first depth image, a depth scale of 0 for one
+  /// that is not known. Unless overridden that is what
+  /// splitfusion::FindCalibration() or else FindForeignCalibration() finds.
   ///
   /// @throw InputError if a file of them is broken.
   virtual std::optional<Calibration> FindCalibration(
-      const std::string& folder) const;
+      const std::string& sequence) const;
+
+  /// Poses of the depth camera that come with a sequence, at the time stamps of
+  /// `frames`, which FindFrames() found, or near them; empty if there are none.
+  /// Unless overridden those of `groundtruth.txt`, TUM text.
+  ///
+  /// @throw InputError if a file of them is broken.
+  virtual Trajectory FindPoses(
+      const std::string& sequence,
+      const std::vector<AssociatedFiles>& frames) const;
+
+  /// What a colour image says of itself before it is decoded; empty if unknown.
+  /// Unless overridden ReadImageHeader().
+  ///
+  /// @throw InputError if the file is missing or shows to be broken.
+  virtual std::optional<ImageHeader> ReadColorHeader(
+      const std::string& path) const;
+
+  /// The same of a depth image; unless overridden ReadDepthHeader().
+  ///
+  /// @throw InputError if the file is missing or shows to be broken.
+  virtual std::optional<ImageHeader> ReadDepthHeader(
+      const std::string& path) const;
 
   /// A colour image, HxW 8UC3, BGR; unless overridden ReadColorImage().
   ///
   /// @throw InputError if the file cannot be read.
   virtual cv::Mat ReadColor(const std::string& path) const;
 
-  /// A depth image, HxW 16UC1 in units of the depth scale, 0 = no measurement,
-  /// registered to the colour; unless overridden ReadDepthImage().
+  /// A depth image, HxW, 0 = no measurement: 16UC1 in units of the depth scale,
+  /// or 32FC1 in metres; unless overridden ReadDepthImage().
   ///
   /// @throw InputError if the file cannot be read.
   virtual cv::Mat ReadDepth(const std::string& path) const;
@@ -54,26 +84,16 @@ class SequenceFormat {
 /// Formats by name.
 using FormatRegistry = Registry<SequenceFormat>;
 
-/// tum and 7scenes.
+/// Those of the headers `*_formats.h`.
 FormatRegistry BuiltinFormats();
 
 /// `name` itself, or for "auto" that of the first format that recognises the
-/// folder.
+/// sequence.
 ///
-/// @throw InputError if the name is unknown, the folder is not there or none
+/// @throw InputError if the name is unknown, the sequence is not there or none
 ///     recognises it; lists the known ones.
-std::string ResolveFormat(const std::string& name, const std::string& folder,
+std::string ResolveFormat(const std::string& name, const std::string& sequence,
                           const FormatRegistry& formats);
-
-/// The layout of the TUM RGB-D benchmark: `associations.txt`, or else `rgb.txt`
-/// and `depth.txt` paired by time stamp; colour png or jpg; depth 16-bit PNG.
-std::unique_ptr<SequenceFormat> MakeTumFormat();
-
-/// The layout of the 7-Scenes data set: `frame-000000.color.png` and
-/// `frame-000000.depth.png` in millimetres, 65535 where nothing was measured;
-/// 30 frames a second. Without `calibration.txt` or `camera.txt` the intrinsics
-/// are those that the authors give for depth, 585 585 320 240 at 640x480.
-std::unique_ptr<SequenceFormat> MakeSevenScenesFormat();
 
 }  // namespace splitfusion
 

@@ -102,6 +102,9 @@ TEST_F(ExperimentTest, SequencesComeFromListsAndFolders) {
   ASSERT_EQ(sequences.size(), 2u);
   EXPECT_EQ(sequences[0].folder, folder_ / "data/room");
   EXPECT_EQ(sequences[1].name, "desk");
+  const std::string recording = folder_.Write("data/scene.sens", "");
+  ASSERT_EQ(ReadSequences(recording, "auto").size(), 1u);
+  EXPECT_EQ(ReadSequences(recording, "auto")[0].folder, recording);
   folder_.Write("truth/desk/groundtruth.txt", "");
   const auto with_truth =
       ReadSequences(folder_ / "data/desk", folder_ / "truth");

@@ -37,6 +37,49 @@ TEST(ColorRegistration, ShowsWhatTheDepthCameraWouldSee) {
   EXPECT_LT(wrong(registered), 100);
 }
 
+TEST(ColorRegistration, TheColourImageMayHaveAnotherSize) {
+  const PinholeCamera camera = BoardsCamera();
+  const Frame truth = BoardsFrame(3, camera, ColorCamera::Registered(camera));
+  for (const double scale : {3.0, 0.75}) {
+    ColorCamera color_camera = BoardsColorCamera();
+    color_camera.width = static_cast<int>(scale * camera.width);
+    color_camera.height = static_cast<int>(scale * camera.height);
+    color_camera.fx *= scale;
+    color_camera.fy *= scale;
+    color_camera.cx = (color_camera.width - 1) / 2.0;
+    color_camera.cy = (color_camera.height - 1) / 2.0;
+    const Frame apart = BoardsFrame(3, camera, color_camera);
+    ASSERT_EQ(apart.color.cols, color_camera.width);
+    const cv::Mat registered = RegisterColor(
+        apart.color, ColorPlaces(camera, color_camera, apart.depth));
+    ASSERT_EQ(registered.size(), apart.depth.size());
+    cv::Mat difference;
+    cv::absdiff(registered, truth.color, difference);
+    cv::extractChannel(difference, difference, 0);
+    const cv::Mat away = NearEdges(apart.depth) == 0;
+    EXPECT_LT(cv::countNonZero((difference > 5) & away), 100) << scale;
+  }
+}
+
+TEST(ColorRegistration, OfAnotherSizeWhatIsHiddenHasTheColourBeside) {
+  // The camera of the test below, at three times the resolution.
+  const PinholeCamera camera = BoardsCamera();
+  ColorCamera color_camera = ColorCamera::Registered(camera);
+  color_camera.color_from_depth.translation() = Eigen::Vector3d(-0.1, 0, 0);
+  color_camera.width = 3 * camera.width;
+  color_camera.height = 3 * camera.height;
+  color_camera.fx *= 3;
+  color_camera.fy *= 3;
+  color_camera.cx *= 3;
+  color_camera.cy *= 3;
+  cv::Mat_<float> depth(camera.height, camera.width, 2.0f);
+  depth(cv::Rect(140, 100, 40, 40)) = 1;
+  const cv::Mat_<cv::Vec2f> places = ColorPlaces(camera, color_camera, depth);
+  EXPECT_NEAR(places(120, 160)[0], 3 * (160 - 29), 0.05);
+  EXPECT_NEAR(places(20, 160)[0], 3 * (160 - 14.5), 0.05);
+  EXPECT_LT(places(120, 135)[0], 3 * (140 - 29));
+}
+
 TEST(ColorRegistration, WhatIsHiddenFromTheColourCameraHasTheColourBeside) {
   // A dark board before a bright wall; the colour camera is far to the right.
   const PinholeCamera camera = BoardsCamera();

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <string>
+
 #include "support/expect_input_error.h"
 #include "support/temporary_folder.h"
 
@@ -71,6 +74,54 @@ TEST(Calibration, NamesTheMissingKey) {
   ExpectInputError([&] { ReadCalibrationKeys(path); }, "'width wide'");
 }
 
+TEST(Calibration, MayHaveALens) {
+  const TemporaryFolder folder;
+  const Calibration found = ReadCalibrationKeys(folder.Write(
+      "camera.txt", kKeys + std::string("k1 0.25\np1 -0.5\nk6 0.125\n")));
+  const std::array<double, 8> expected = {0.25, 0, -0.5, 0, 0, 0, 0, 0.125};
+  EXPECT_EQ(found.lens.coefficients, expected);
+  EXPECT_FALSE(found.color);
+  const std::string bad =
+      folder.Write("camera.txt", kKeys + std::string("k1 1e999\n"));
+  ExpectInputError([&] { ReadCalibrationKeys(bad); }, "camera.txt");
+}
+
+TEST(Calibration, WithAColourCameraIsReadAsItWasWritten) {
+  const TemporaryFolder folder;
+  Calibration written = ReadCalibrationKeys(folder.Write("a.txt", kKeys));
+  written.lens.coefficients = {0.1, -0.2, 0.001, 0.002, 0.3, 0, 0, 0};
+  written.color_lens.coefficients = {0.4, 0, 0, 0, 0, 0.5, 0, 0};
+  ColorCamera& color = written.color.emplace();
+  color.width = 1296;
+  color.height = 968;
+  color.fx = 1170.2;
+  color.fy = 1171.3;
+  color.cx = 647.75;
+  color.cy = 483.5;
+  color.color_from_depth.linear() =
+      Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  color.color_from_depth.translation() = Eigen::Vector3d(-0.025, 0.001, 0);
+  const std::string path = folder / "camera.txt";
+  WriteCalibrationKeys(path, written);
+  const Calibration read = ReadCalibrationKeys(path);
+  EXPECT_EQ(read.lens.coefficients, written.lens.coefficients);
+  EXPECT_EQ(read.color_lens.coefficients, written.color_lens.coefficients);
+  ASSERT_TRUE(read.color);
+  EXPECT_EQ(read.color->width, 1296);
+  EXPECT_EQ(read.color->fy, 1171.3);
+  EXPECT_EQ(read.color->cx, 647.75);
+  EXPECT_TRUE(
+      read.color->color_from_depth.isApprox(color.color_from_depth, 1e-12));
+}
+
+TEST(Calibration, AColourCameraIsWholeOrNotThere) {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.Write("camera.txt", kKeys + std::string("color_width 1296\n"));
+  ExpectInputError([&] { ReadCalibrationKeys(path); },
+                   "camera.txt: no line 'color_height VALUE'");
+}
+
 TEST(Calibration, NamesKeysThatNobodyReads) {
   const TemporaryFolder folder;
   const auto with = [&](const std::string& line) {
@@ -78,8 +129,9 @@ TEST(Calibration, NamesKeysThatNobodyReads) {
       ReadCalibrationKeys(path);
     };
   };
-  EXPECT_NO_THROW(with("# k1 0.2\n")());
-  ExpectInputError(with("k1 0.2\n"), "key 'k1': expected width, height");
+  EXPECT_NO_THROW(with("# k9 0.2\n")());
+  ExpectInputError(with("k9 0.2\n"), "key 'k9': expected width, height");
+  ExpectInputError(with("color_k9 0.2\n"), "key 'color_k9': expected width");
   ExpectInputError(with("fx 500\n"), "key 'fx'");
   ExpectInputError(with("fx 500 501\n"), "'fx 500 501'");
 }

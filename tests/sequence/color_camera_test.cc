@@ -26,6 +26,11 @@ TEST(ColorCamera, IsReadAsItWasWritten) {
   EXPECT_DOUBLE_EQ(read.fx, 525.1);
   EXPECT_DOUBLE_EQ(read.cy, 240.4);
   EXPECT_TRUE(read.color_from_depth.isApprox(camera.color_from_depth, 1e-12));
+  EXPECT_EQ(read.SizeBeside({640, 480}), cv::Size(640, 480));
+  camera.width = 1296;
+  camera.height = 968;
+  WriteColorCamera(path, camera);
+  EXPECT_EQ(ReadColorCamera(path).SizeBeside({640, 480}), cv::Size(1296, 968));
 }
 
 TEST(ColorCamera, NamesWhatIsWrong) {
@@ -39,6 +44,8 @@ TEST(ColorCamera, NamesWhatIsWrong) {
   ExpectInputError(file("525 525 320 240 0 0 0\n"), "color_camera.txt:1");
   ExpectInputError(file("525 525 320 240 0 0 0 0 0 0 1 7\n"),
                    "color_camera.txt:1");
+  ExpectInputError(file("525 525 320 240 0 0 0 0 0 0 1 640 0\n"),
+                   "size of the colour camera = 640x0: expected two positive");
   ExpectInputError(file("-525 525 320 240 0 0 0 0 0 0 1\n"),
                    "fx of the colour camera");
   ExpectInputError(file("525 525 320 240 0 0 0 0 0 0 0\n"),

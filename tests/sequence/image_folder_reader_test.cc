@@ -73,6 +73,65 @@ TEST_F(ImageFolderReaderTest, ReadsAPartUnderItsOwnIndices) {
   EXPECT_FALSE(reader.Next().has_value());
 }
 
+TEST_F(ImageFolderReaderTest, ReadsEverySoManyFramesUnderTheirOwnIndices) {
+  ReaderOptions options;
+  options.frame_step = 2;
+  ImageFolderReader reader(folder_ / "", options);
+  ASSERT_EQ(reader.size(), 2);
+  EXPECT_EQ(reader.Next()->index, 0);
+  const Frame last = *reader.Next();
+  EXPECT_EQ(last.index, 2);
+  EXPECT_EQ(last.stem, "d2");
+  EXPECT_FALSE(reader.Next().has_value());
+  options.first_frame = 1;
+  EXPECT_EQ(ImageFolderReader(folder_ / "", options).size(), 1);
+  options.first_frame = 0;
+  options.max_frames = 1;
+  EXPECT_EQ(ImageFolderReader(folder_ / "", options).size(), 1);
+  options.frame_step = 0;
+  ExpectInputError([&] { ImageFolderReader reader(folder_ / "", options); },
+                   "frame_step = 0: expected a number >= 1");
+}
+
+TEST_F(ImageFolderReaderTest, GivesImagesWithoutTheDistortionOfTheirLens) {
+  std::filesystem::remove(folder_ / "calibration.txt");
+  const std::string keys =
+      "width 32\nheight 24\nfx 30\nfy 30\ncx 16\ncy 12\n"
+      "depth_scale 1000\n";
+  folder_.Write("camera.txt", keys + "k1 0.5\n");
+  cv::Mat depth(24, 32, CV_16UC1, cv::Scalar(1000));
+  depth.colRange(0, 8).setTo(2000);
+  WriteDepth(0, depth);
+  cv::Mat color(24, 32, CV_8UC3, cv::Scalar(10, 20, 30));
+  color.colRange(0, 8).setTo(cv::Scalar(90, 20, 30));
+  cv::imwrite(folder_ / "rgb/c0.png", color);
+  const ImageFolderReader reader(folder_ / "");
+  const Frame frame = reader.Read(0);
+  // Pixel 8 of the row of the middle is at 7.72 in the file, that of a row
+  // farther up at 7.36.
+  EXPECT_EQ(frame.color.at<cv::Vec3b>(12, 10)[0], 10);
+  EXPECT_EQ(frame.color.at<cv::Vec3b>(12, 6)[0], 90);
+  EXPECT_FLOAT_EQ(reader.ReadDepth(0)(3, 8), 2);
+  EXPECT_FLOAT_EQ(reader.ReadDepth(0)(12, 8), 1);
+  ASSERT_TRUE(reader.color_undistortion());
+  // Intrinsics from elsewhere leave the lens.
+  ReaderOptions options;
+  options.camera = PinholeCamera{32, 24, 30, 30, 16, 12};
+  options.depth_scale = 1000;
+  EXPECT_TRUE(ImageFolderReader(folder_ / "", options).color_undistortion());
+}
+
+TEST_F(ImageFolderReaderTest, ColourMayHaveAnotherSize) {
+  cv::imwrite(folder_ / "rgb/c0.png",
+              cv::Mat(48, 64, CV_8UC3, cv::Scalar(10, 20, 30)));
+  folder_.Write("color_camera.txt", "60 60 32 24 0 0 0 0 0 0 1 64 48\n");
+  ImageFolderReader reader(folder_ / "");
+  EXPECT_EQ(reader.color_size(), cv::Size(64, 48));
+  EXPECT_EQ(reader.Next()->color.size(), cv::Size(64, 48));
+  ExpectInputError([&] { reader.CheckFrames(); },
+                   "c1.png: image of 32x24: expected 64x48");
+}
+
 TEST_F(ImageFolderReaderTest, OptionsReplaceTheCalibrationFile) {
   ReaderOptions options;
   options.depth_scale = 500;

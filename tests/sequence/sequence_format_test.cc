@@ -72,22 +72,26 @@ TEST_F(SevenScenes, AFormatCanBeNamed) {
   ReaderOptions options;
   options.format = "7scenes";
   EXPECT_EQ(ImageFolderReader(folder_ / "", options).size(), 2);
-  options.format = "scannet";
+  options.format = "kitti";
   ExpectInputError([&] { ImageFolderReader(folder_ / "", options); },
-                   "format = scannet: expected tum or 7scenes");
+                   "format = kitti: expected bonn, icl_nuim, tum");
 }
 
 TEST(SequenceFormat, WhatNoneRecognisesListsThem) {
   const TemporaryFolder folder;
-  folder.Write("frame-1.color.png", "");
+  folder.Write("frame-.color.png", "");
   folder.Write("frame-abcdef.color.png", "");
-  const std::string text =
-      folder / "" +
-      ": expected a sequence of a known format, tum (associations.txt, or "
-      "rgb.txt and depth.txt) or 7scenes (frame-000000.color.png";
-  ExpectInputError([&] { ImageFolderReader(folder / ""); }, text);
+  ExpectInputError([&] { ImageFolderReader(folder / ""); },
+                   folder / "" +
+                       ": expected a sequence of a known format, bonn (rgb.txt "
+                       "and depth.txt in a folder rgbd_bonn_...), icl_nuim (");
+  ExpectInputError([&] { ImageFolderReader(folder / ""); },
+                   "7scenes (frame-000000.color.png, frame-000000.depth.png, "
+                   "...), scannet (color/, depth/ and ");
+  ExpectInputError([&] { ImageFolderReader(folder / ""); },
+                   "sens (a file *.sens) or rosbag (a file *.bag of ROS 1)");
   ExpectInputError([&] { ImageFolderReader(folder / "none"); },
-                   "no such folder");
+                   "no such folder or file");
   ReaderOptions options;
   options.format = "7scenes";
   ExpectInputError([&] { ImageFolderReader(folder / "", options); },

@@ -79,17 +79,20 @@ Frame BoardsFrame(int index, const PinholeCamera& depth_camera,
   Frame frame;
   frame.index = index;
   frame.depth.create(depth_camera.height, depth_camera.width, CV_32FC1);
-  frame.color.create(depth_camera.height, depth_camera.width, CV_8UC3);
   for (int v = 0; v < depth_camera.height; ++v) {
     for (int u = 0; u < depth_camera.width; ++u) {
       const Eigen::Vector3d ray = depth_camera.BackProject<double>(u, v, 1);
       frame.depth.at<float>(v, u) =
           static_cast<float>(Cast(boards, Eigen::Vector3d::Zero(), ray).z);
-      const Eigen::Vector3d color_ray((u - color_camera.cx) / color_camera.fx,
-                                      (v - color_camera.cy) / color_camera.fy,
-                                      1);
+    }
+  }
+  frame.color.create(color_camera.SizeBeside(frame.depth.size()), CV_8UC3);
+  for (int v = 0; v < frame.color.rows; ++v) {
+    for (int u = 0; u < frame.color.cols; ++u) {
+      const Eigen::Vector3d ray((u - color_camera.cx) / color_camera.fx,
+                                (v - color_camera.cy) / color_camera.fy, 1);
       const int grey = Cast(boards, depth_from_color.translation(),
-                            depth_from_color.linear() * color_ray)
+                            depth_from_color.linear() * ray)
                            .grey;
       frame.color.at<cv::Vec3b>(v, u) =
           cv::Vec3b::all(static_cast<uchar>(grey));

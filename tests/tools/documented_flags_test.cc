@@ -20,9 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using Flags = std::set<std::string>;
 
-constexpr const char* kPrograms[] = {
-    "sf_batch",  "sf_evaluate", "sf_montage", "sf_export", "sf_refine",
-    "sf_report", "sf_run",      "sf_segment", "sf_solve",  "sf_synth"};
+constexpr const char* kPrograms[] = {"sf_convert", "sf_batch",  "sf_evaluate",
+                                     "sf_montage", "sf_export", "sf_refine",
+                                     "sf_report",  "sf_run",    "sf_segment",
+                                     "sf_solve",   "sf_synth"};
 
 /// One flag in a page.
 struct Mention {
@@ -153,6 +154,7 @@ TEST(DocumentedFlags, AreThoseOfThePrograms) {
   const std::map<std::string, Flags> known = KnownFlags();
   // Of cmake and ctest.
   Flags any = {"build", "install", "prefix", "preset", "target", "parallel"};
+  any.insert("input");  // Of Open3D.
   // Of sbatch, squeue, apt-get, apptainer and tests/slurm.sh.
   any.insert({"array", "bind", "cpus", "fakeroot", "me", "mem", "no",
               "no_install", "open", "partition", "requeue", "time"});

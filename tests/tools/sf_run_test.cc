@@ -229,7 +229,7 @@ TEST_F(SfRun, BadOptionsEndWithTwoAndLeaveNothing) {
   refused("--preset=fusion", "--preset = fusion: expected background_only");
   refused("--solver=lm", "--solver = lm: expected gn_pcg");
   refused("--association=flow", "--association = flow: expected projective");
-  refused("--format=scannet", "--format = scannet: expected tum");
+  refused("--format=kitti", "--format = kitti: expected bonn, icl_nuim, tum");
   refused("--terms=arapp", "term = arapp: expected point_to_plane");
   refused("--linear_solver=lu", "--linear_solver = lu: expected auto");
   refused("--object_voxel=0", "--object_voxel = 0: expected 0.001..1");
