@@ -46,6 +46,10 @@ void PipelineOptions::List(OptionList* list) {
   list->Part("", &point_tracks);
   list->Part("", &match);
   list->Part("key_frame_", &key_frames);
+  list->Switch("close_loops", &close_loops,
+               "Once all frames are known, correct the drift of a camera that "
+               "came back to where it was, and if poses change by more than a "
+               "voxel fuse all frames anew.");
   list->Demand(match.feature_model.empty() ||
                    (match.features && tracker.part_start.parts.count > 0),
                "feature_model",
