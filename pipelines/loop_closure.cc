@@ -109,24 +109,27 @@ LoopClosure CloseLoops(const std::vector<PathFrame>& path,
     if (Contradiction(after, edge) < distance) kept.push_back(edge);
   }
   if (getenv("SFDUMP")) {
-    for (const PoseEdge& e : edges) {
-      const Rigid3d b = before[e.to] * before[e.from].inverse();
-      const Rigid3d d = b.inverse() * e.motion;
-      fprintf(stderr,
-              "edge %d %d (%d %d) %s before %.1f mm (%.2f deg) after %.1f\n",
-              e.from, e.to, path[e.from].frame, path[e.to].frame,
-              e.may_be_wrong ? "L" : "T", 1e3 * Contradiction(before, e),
-              RotationAngle(d.linear()) * 57.3, 1e3 * Contradiction(after, e));
-    }
+    FILE* f = fopen(getenv("SFDUMP"), "w");
+    const auto mat = [&](const auto& m) {
+      for (int r = 0; r < m.rows(); ++r)
+        for (int c = 0; c < m.cols(); ++c) fprintf(f, " %.9g", m(r, c));
+    };
     for (size_t i = 0; i < path.size(); ++i) {
-      const Rigid3d c = after[i] * before[i].inverse();
-      fprintf(
-          stderr,
-          "node %zu frame %d goes_on %d change %.1f mm, shift %.1f turn %.2f\n",
-          i, path[i].frame, path[i].goes_on,
-          1e3 * (c * path[i].points - path[i].points).norm() / 2,
-          1e3 * c.translation().norm(), RotationAngle(c.linear()) * 57.3);
+      fprintf(f, "node %d %d", path[i].frame, path[i].goes_on);
+      mat(before[i].matrix()), mat(path[i].points);
+      fprintf(f, "\n");
     }
+    for (const PoseEdge& e : edges) {
+      fprintf(f, "edge %d %d %d", e.from, e.to, e.may_be_wrong);
+      mat(e.motion.matrix()), mat(e.points);
+      fprintf(f, "\n");
+    }
+    for (const auto& [frame, pose] : tracked) {
+      fprintf(f, "pose %d", frame);
+      mat(pose.matrix());
+      fprintf(f, "\n");
+    }
+    fclose(f);
   }
   report.compared = static_cast<int>(pairs.size());
   report.found = static_cast<int>(found.size());

@@ -298,6 +298,7 @@ bool SequenceRun::FindLoops() {
   LoopReport& report = closure_.report;
   report.fused_anew =
       report.largest_change > options.background.tsdf.voxel_size;
+  if (getenv("SFSKIP")) report.fused_anew = false;
   if (!report.fused_anew) closure_.world_from_camera.clear();
   return report.fused_anew;
 }
@@ -312,9 +313,11 @@ void SequenceRun::BeginAnew() {
                 " m: all frames are fused anew");
   }
   frames_.reset();  // Its thread uses the others.
+  const UsualMisfit misfit = work_->fusion.camera_misfit();
   work_.reset();
   directory_.reset();
   work_ = make_();
+  work_->fusion.set_camera_misfit(misfit);
   for (const char* name : {"checkpoints", "masks", "pictures", "problems",
                            "solver", "uncertainty"}) {
     std::filesystem::remove_all(

@@ -69,6 +69,12 @@ class SplitFusion {
   /// PipelineOptions::close_loops.
   LoopClosure CloseCameraLoops() const;
 
+  /// How well the camera's view usually fits, as found in a first pass over the
+  /// same frames: given poses do not tell. Before the first frame.
+  void set_camera_misfit(const UsualMisfit& misfit) { camera_misfit_ = misfit; }
+  /// The same so far.
+  const UsualMisfit& camera_misfit() const { return camera_misfit_; }
+
   /// Once all frames are known: the poses of frames in which the camera was
   /// lost go smoothly from the last known one to the next, see PoseAmid().
   void PlaceLostCamera();
