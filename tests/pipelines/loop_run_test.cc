@@ -4,13 +4,14 @@
 
 #include <cmath>
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 #include <stdexcept>
 
+#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/pi.h"
 #include "splitfusion/lib/sequence/trajectory.h"
 #include "splitfusion/pipelines/reconstruction.h"
@@ -130,6 +131,15 @@ class LoopRun : public ::testing::Test {
     return nlohmann::json::parse(folder_.Read(run + "/summary.json"))["loops"];
   }
 
+  void ExpectSame(const std::string& run, const std::string& other) const {
+    for (const char* file :
+         {"trajectory.txt", "surfaces/000_background/mesh.ply"}) {
+      EXPECT_TRUE(folder_.Read(run + "/" + file) ==
+                  folder_.Read(other + "/" + file))
+          << file;
+    }
+  }
+
   /// Largest angle by which a camera is off that was turned like the first,
   /// radians.
   double ErrorOfTheLast(const std::string& run) const {
@@ -145,17 +155,55 @@ class LoopRun : public ::testing::Test {
   SequenceRunOptions run_options_;
 };
 
-TEST_F(LoopRun, XTurn) {
-  WriteTurn(folder_, kTrueFocal);
-  ASSERT_TRUE(Execute("exact"));
-  std::cerr << Loops("exact").dump() << " " << ErrorOfTheLast("exact") << "\n";
+/// Interrupts a run, or lets it fail, after so many frames of a pass over them;
+/// passes count that it begins itself.
+SequenceRunHooks StopAt(int pass, int frame, bool fails) {
+  const auto begun = std::make_shared<int>(0), done = std::make_shared<int>(0);
+  const auto is_there = [=] { return *begun == pass && *done == frame; };
+  SequenceRunHooks hooks;
+  hooks.shown = [=](const RunProgress& progress) {
+    if (progress.pass != RunPass::kTracking) return;
+    *begun += progress.done == 1;
+    *done = progress.done;
+    if (fails && is_there()) throw InputError("disk on fire");
+  };
+  hooks.interrupted = [=] { return !fails && is_there(); };
+  return hooks;
+}
+
+TEST_F(LoopRun, ACameraThatTurnsAroundComesBack) {
   WriteTurn(folder_, 1.04 * kTrueFocal);
-  ASSERT_TRUE(Execute("closed"));
-  std::cerr << Loops("closed").dump() << " " << ErrorOfTheLast("closed")
-            << "\n";
   options_.close_loops = false;
   ASSERT_TRUE(Execute("open"));
-  std::cerr << ErrorOfTheLast("open") << "\n";
+  EXPECT_EQ(Loops("open")["key_frames"], 0);
+  options_.close_loops = true;
+  ASSERT_TRUE(Execute("closed"));
+  const nlohmann::json loops = Loops("closed");
+  EXPECT_GE(loops["kept"], 3);
+  EXPECT_TRUE(loops["fused_anew"]);
+  EXPECT_LT(ErrorOfTheLast("closed"), 0.5 * ErrorOfTheLast("open"));
+}
+
+TEST_F(LoopRun, WithoutDriftNothingChanges) {
+  WriteTurn(folder_, kTrueFocal);
+  options_.close_loops = false;
+  ASSERT_TRUE(Execute("open"));
+  options_.close_loops = true;
+  ASSERT_TRUE(Execute("closed"));
+  EXPECT_GE(Loops("closed")["kept"], 3);
+  EXPECT_FALSE(Loops("closed")["fused_anew"]);
+  ExpectSame("open", "closed");
+}
+
+TEST_F(LoopRun, TheSecondPassGoesOnWhereItWasStopped) {
+  WriteTurn(folder_, 1.04 * kTrueFocal);
+  ASSERT_TRUE(Execute("whole"));
+  run_options_.checkpoint_every = 7;
+  EXPECT_FALSE(Execute("stopped", StopAt(2, 5, /*fails=*/false)));
+  EXPECT_FALSE(Execute("stopped", StopAt(0, 25, /*fails=*/true)));
+  ASSERT_TRUE(Execute("stopped"));
+  EXPECT_EQ(Loops("whole"), Loops("stopped"));
+  ExpectSame("whole", "stopped");
 }
 
 }  // namespace
