@@ -58,8 +58,8 @@ std::vector<PoseEdge> LandmarkEdges(
 }
 
 /// Root mean square of contradictions.
-double Misfit(const std::vector<Rigid3d>& poses,
-              const std::vector<PoseEdge>& edges) {
+double RmsContradiction(const std::vector<Rigid3d>& poses,
+                        const std::vector<PoseEdge>& edges) {
   double sum = 0;
   for (const PoseEdge& edge : edges) {
     const double off = Contradiction(poses, edge);
@@ -69,7 +69,8 @@ double Misfit(const std::vector<Rigid3d>& poses,
 }
 
 /// The motion between none and all of `all`.
-Rigid3d Between(const Rigid3d& none, const Rigid3d& all, double share) {
+Rigid3d PartOfCorrection(const Rigid3d& none, const Rigid3d& all,
+                         double share) {
   Rigid3d between = Rigid3d::Identity();
   between.linear() = Eigen::Quaterniond(none.linear())
                          .slerp(share, Eigen::Quaterniond(all.linear()))
@@ -134,8 +135,8 @@ LoopClosure CloseLoops(const std::vector<PathFrame>& path,
   report.compared = static_cast<int>(pairs.size());
   report.found = static_cast<int>(found.size());
   report.kept = static_cast<int>(kept.size());
-  report.misfit_before = Misfit(before, kept);
-  report.misfit_after = Misfit(after, kept);
+  report.misfit_before = RmsContradiction(before, kept);
+  report.misfit_after = RmsContradiction(after, kept);
   std::map<int, Rigid3d> corrections;  // Of camera frames.
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Rigid3d change = after[i] * before[i].inverse();
@@ -158,7 +159,7 @@ LoopClosure CloseLoops(const std::vector<PathFrame>& path,
     const double span = next->first - last->first;
     const double share =
         span > 0 && frame < next->first ? (frame - last->first) / span : 1;
-    const Rigid3d change = Between(last->second, next->second, share);
+    const Rigid3d change = PartOfCorrection(last->second, next->second, share);
     pose = pose * change.inverse();
   }
   return closure;

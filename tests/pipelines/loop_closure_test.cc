@@ -10,21 +10,21 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kFrames = 21;
+constexpr int kPathFrames = 21;
 
 /// Where a frame was tracked that is somewhere else, camera from plate.
 using Drift = std::function<Rigid3d(int frame, const Rigid3d& truth)>;
 
 /// A camera that goes along the plate and comes back.
 Rigid3d TruePose(int frame) {
-  const int there = std::min(frame, kFrames - 1 - frame);
+  const int there = std::min(frame, kPathFrames - 1 - frame);
   return PoseOfPlate(0.02 * there, 0.05 * there);
 }
 
 LoopClosure Close(const Drift& drift, int lost_before = -1) {
   KeyFrames frames{KeyFrameOptions()};
   std::map<int, Rigid3d> tracked;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kPathFrames; ++i) {
     LiveView live = ViewOfPlate(TruePose(i));
     live.uncertain.setTo(255, live.labels == 0);
     live.labels.setTo(0);
@@ -50,7 +50,7 @@ double LargestError(const LoopClosure& closure) {
 TEST(LoopClosure, LeavesAPathWithoutDriftWhereItIs) {
   const LoopClosure closure =
       Close([](int, const Rigid3d& truth) { return truth; });
-  EXPECT_EQ(closure.world_from_camera.size(), std::size_t{kFrames});
+  EXPECT_EQ(closure.world_from_camera.size(), std::size_t{kPathFrames});
   EXPECT_LT(closure.report.largest_change, 0.01);
   EXPECT_LT(LargestError(closure), 0.01);
 }

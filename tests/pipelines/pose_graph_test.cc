@@ -54,7 +54,7 @@ struct DriftingChain {
 };
 
 /// Largest distance of what a pose shows from where it is, metres.
-double LargestError(const std::vector<Rigid3d>& poses) {
+double LargestPoseError(const std::vector<Rigid3d>& poses) {
   const std::vector<Rigid3d> truth = TrueCircle();
   double largest = 0;
   for (int i = 0; i < kPoses; ++i) {
@@ -75,12 +75,12 @@ TEST(PoseGraph, WithoutLoopsNothingMoves) {
 
 TEST(PoseGraph, ALoopTakesTheDriftOutOfAllPoses) {
   DriftingChain chain;
-  ASSERT_GT(LargestError(chain.poses), 0.3);
+  ASSERT_GT(LargestPoseError(chain.poses), 0.3);
   const Rigid3d closed = MotionBetween(TrueCircle(), 0, kPoses - 1);
   chain.edges.push_back(Loop(0, kPoses - 1, closed));
   const auto solved = SolvePoseGraph(chain.poses, chain.edges, kDistance);
   EXPECT_TRUE(solved[0].isApprox(chain.poses[0], 0));
-  EXPECT_LT(LargestError(solved), 0.05);
+  EXPECT_LT(LargestPoseError(solved), 0.05);
   EXPECT_LT(Contradiction(solved, chain.edges.back()), 0.03);
 }
 
@@ -95,7 +95,7 @@ TEST(PoseGraph, AFalseLoopFallsOut) {
   // Two walls that look alike.
   chain.edges.push_back(Loop(3, 15, MakeMotion({0, 0.1, 0}, {0.2, 0, 0})));
   const auto solved = SolvePoseGraph(chain.poses, chain.edges, kDistance);
-  EXPECT_LT(LargestError(solved), 0.05);
+  EXPECT_LT(LargestPoseError(solved), 0.05);
   EXPECT_GT(Contradiction(solved, chain.edges.back()), 1);
   for (int i = 0; i < kPoses; ++i) {
     EXPECT_TRUE(solved[i].isApprox(without[i], 1e-3)) << i;
