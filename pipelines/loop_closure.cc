@@ -107,7 +107,10 @@ LoopClosure CloseLoops(const std::vector<PathFrame>& path,
   const std::vector<Rigid3d> after = SolvePoseGraph(before, edges, distance);
   std::vector<PoseEdge> kept;
   for (const PoseEdge& edge : found) {
-    if (Contradiction(after, edge) < distance) kept.push_back(edge);
+    if (Contradiction(after, edge) > distance) continue;
+    kept.push_back(edge);
+    report.largest_drift =
+        std::max(report.largest_drift, Contradiction(before, edge));
   }
   if (getenv("SFDUMP")) {
     FILE* f = fopen(getenv("SFDUMP"), "w");
@@ -137,6 +140,9 @@ LoopClosure CloseLoops(const std::vector<PathFrame>& path,
   report.kept = static_cast<int>(kept.size());
   report.misfit_before = RmsContradiction(before, kept);
   report.misfit_after = RmsContradiction(after, kept);
+  // Less is what landmarks are uncertain by, and what correspondences reach
+  // from old places: there the camera has come back already.
+  if (report.largest_drift <= distance) return closure;
   std::map<int, Rigid3d> corrections;  // Of camera frames.
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Rigid3d change = after[i] * before[i].inverse();

@@ -26,6 +26,7 @@ struct LoopClosure {
 /// Closes the loops of a camera's path, see SolvePoseGraph(): key frames that
 /// follow each other are as far apart as they were tracked, unless the camera
 /// was lost between them, and pairs that look alike as their landmarks say.
+/// Poses stay as they are where no such pair contradicts them for sure.
 ///
 /// @param tracked of frames in which the camera was tracked, world from camera.
 /// @return poses of these frames; the first key frame's stays as it was, and

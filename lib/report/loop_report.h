@@ -14,13 +14,15 @@ struct LoopReport {
   double largest_change = 0;  ///< Of what a key frame shows, RMS, metres.
   double largest_shift = 0;   ///< Of a key frame's camera, metres.
   double largest_turn = 0;    ///< Likewise, radians.
+  double largest_drift = 0;   ///< By which a kept one contradicted, metres.
   bool fused_anew = false;    ///< Whether the results are of these poses.
 
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
     (*archive)(key_frames, compared, found, kept, misfit_before, misfit_after,
-               largest_change, largest_shift, largest_turn, fused_anew);
+               largest_change, largest_shift, largest_turn, largest_drift,
+               fused_anew);
   }
 };
 

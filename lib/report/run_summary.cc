@@ -91,6 +91,7 @@ Json ToJson(const LoopReport& loops) {
           {"kept", loops.kept},
           {"misfit_before", loops.misfit_before},
           {"misfit_after", loops.misfit_after},
+          {"largest_drift", loops.largest_drift},
           {"largest_change", loops.largest_change},
           {"largest_shift", loops.largest_shift},
           {"largest_turn", loops.largest_turn},
