@@ -79,6 +79,17 @@ class FrameTracker {
   std::optional<Rigid3d> MotionSinceSight(const Surface& surface,
                                           const LiveView& live) const;
 
+  /// The background was tracked: here the camera's path leads, see
+  /// KeyFrames::KeepOnPath(); before KeepCamera().
+  void KeepOnPath(const Surface& background, const LiveView& live, int frame,
+                  bool goes_on) {
+    key_frames_.KeepOnPath(live, MeanRigidMotion(background.graph()), frame,
+                           goes_on);
+  }
+  /// As KeyFrames::Path().
+  std::vector<PathFrame> CameraPath(const PinholeCamera& camera) const {
+    return key_frames_.Path(camera);
+  }
   /// The background was tracked: a camera that is lost will be looked for here.
   void KeepCamera(const Surface& background, const LiveView& live) {
     key_frames_.Keep(live, MeanRigidMotion(background.graph()));

@@ -49,6 +49,10 @@ void PipelineOptions::List(OptionList* list) {
   list->Number("unusual_misfit", &unusual_misfit, Range::AtLeast(1), "",
                "The camera is looked for where the background fits so many "
                "times as badly as usual.");
+  list->Switch("close_loops", &close_loops,
+               "Once all frames are known, correct the drift of a camera that "
+               "came back to where it was, and if poses change by more than a "
+               "voxel fuse all frames anew.");
   list->Demand(match.feature_model.empty() ||
                    (match.features && tracker.part_start.parts.count > 0),
                "feature_model",

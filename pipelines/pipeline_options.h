@@ -68,6 +68,9 @@ struct PipelineOptions {
   bool split_scene = true;     ///< False: one surface holds the whole scene.
   bool model_objects = true;   ///< False: moving things are only cut out.
   bool deform_objects = true;  ///< False: moving things are rigid.
+  /// Drift of the camera is corrected where it comes back to what it knows, and
+  /// everything fused anew if that changes it.
+  bool close_loops = true;
   /// Vertices are coloured anew once all frames are known, see
   /// BestViewColors.
   bool best_view_colors = true;

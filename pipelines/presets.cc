@@ -20,12 +20,14 @@ const std::map<std::string, Change>& Presets() {
          o->tracker.part_start.parts.count = 0;
          o->hidden.refine = false;
          o->best_view_colors = false;
+         o->close_loops = false;
        }},
       {"kinectfusion", [](PipelineOptions* o) { o->split_scene = false; }},
       {"dynamicfusion",
        [](PipelineOptions* o) {
          o->split_scene = false;
          o->deform_background = true;
+         o->close_loops = false;
          o->terms = PipelineOptions::kDeformingTerms;
        }},
       {"cofusion", [](PipelineOptions* o) { o->deform_objects = false; }},

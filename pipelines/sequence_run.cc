@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "splitfusion/cost_functions/builtin_terms.h"
-#include "splitfusion/lib/base/any_of.h"
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/archive_file.h"
 #include "splitfusion/lib/base/atomic_file.h"
@@ -36,32 +34,20 @@ std::vector<int> SkippedFrames(const ImageFolderReader& reader) {
   return frames;
 }
 
-/// Names of the terms of any surface that weigh something.
-std::set<std::string> TermsInUse(const SurfaceEnergies& energies) {
-  std::set<std::string> names;
-  const auto look = [&](const Energy& energy) {
-    for (const WeightedTerm& term : energy) {
-      if (term.options.weight > 0) names.insert(term.options.name);
-    }
-  };
-  look(energies.all());
-  for (const std::string& named : energies.classes()) look(energies.Of(named));
-  return names;
-}
-
 }  // namespace
 
 SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
                          const Maker& make, RunFolder* folder,
                          SequenceRunOptions options, SequenceRunHooks hooks)
     : work_(std::move(work)),
+      make_(make),
       folder_(*folder),
       options_(std::move(options)),
       hooks_(std::move(hooks)),
       schedule_(options_.checkpoint_every) {
-  if (folder_.start() == RunStart::kResumed && !Resume()) work_ = make();
+  if (folder_.start() == RunStart::kResumed && !Resume()) work_ = make_();
   if (!directory_) {
-    OpenDirectory();
+    OpenDirectory(/*goes_on=*/false);
     if (!options_.from.run.empty()) StartFromOther();
   }
   if (!folder_.note().empty()) Warn(folder_.root() + ": " + folder_.note());
@@ -77,6 +63,10 @@ SequenceRun::~SequenceRun() = default;
 void SequenceRun::Execute() {
   try {
     ProcessFrames();
+    if (FindLoops()) {
+      BeginAnew();
+      ProcessFrames();
+    }
     WriteEnd();
   } catch (const std::exception& error) {
     folder_.CheckHeld();  // If it is gone, that is why no file can be written.
@@ -98,20 +88,20 @@ void SequenceRun::WriteColorRegistration() const {
   Warn(work_->note + "; registered (--color_camera, docs/your_data.md)");
 }
 
-void SequenceRun::OpenDirectory() {
-  directory_.emplace(folder_.unfinished().root(), options_.facts,
-                     folder_.start() == RunStart::kResumed);
+void SequenceRun::OpenDirectory(bool goes_on) {
+  directory_.emplace(folder_.unfinished().root(), options_.facts, goes_on);
 }
 
 /// Goes on from the checkpoint; false if that is of no use.
 bool SequenceRun::Resume() {
   try {
-    OpenDirectory();
+    OpenDirectory(/*goes_on=*/true);
     ReadArchiveFile(folder_.unfinished().Checkpoint(), kCheckpointVersion,
                     [&](ArchiveReader* archive) { Serialize(archive); });
   } catch (const InputError& error) {
     directory_.reset();
     done_ = 0;
+    closure_ = {};
     coarse_.clear();
     heard_terms_.clear();
     warned_of_depth_ = false;
@@ -143,8 +133,8 @@ void SequenceRun::StartFromOther() {
 /// All that later frames and results depend on.
 template <typename Archive>
 void SequenceRun::Serialize(Archive* archive) {
-  (*archive)(done_, coarse_, heard_terms_, warned_of_depth_, work_->fusion,
-             *directory_);
+  (*archive)(closure_, done_, coarse_, heard_terms_, warned_of_depth_,
+             work_->fusion, *directory_);
 }
 
 /// The state alone, without what this run reported.
@@ -218,6 +208,10 @@ std::optional<PreparedFrame> SequenceRun::ReadNext() {
   std::optional<Frame> frame = work_->reader.Next();
   if (!frame) return std::nullopt;
   const double seconds = reading.Seconds();
+  const auto closed = closure_.world_from_camera.find(frame->index);
+  if (closed != closure_.world_from_camera.end()) {
+    frame->world_from_camera = closed->second;
+  }
   PreparedFrame prepared = work_->fusion.Prepare(*frame);
   prepared.read_seconds += seconds;
   return prepared;
@@ -293,6 +287,55 @@ void SequenceRun::ShowPass(RunPass pass, int done, int total) const {
       {pass, done, total, static_cast<int>(work_->fusion.surfaces().size())});
 }
 
+/// Whether the poses of the camera change by more than a voxel where it came
+/// back to what it knew: then closure_ holds better ones.
+bool SequenceRun::FindLoops() {
+  const PipelineOptions& options = work_->fusion.options();
+  const bool open = options.close_loops && options_.from.run.empty() &&
+                    work_->reader.options().trajectory.empty() &&
+                    !closure_.report.fused_anew;
+  if (!open || done_ < work_->reader.size()) return false;
+  closure_ = work_->fusion.CloseCameraLoops();
+  LoopReport& report = closure_.report;
+  report.fused_anew =
+      report.largest_change > options.background.tsdf.voxel_size;
+  if (getenv("SFSKIP")) report.fused_anew = false;
+  if (!report.fused_anew) closure_.world_from_camera.clear();
+  return report.fused_anew;
+}
+
+/// All frames will be processed again, with the poses of closure_; what is
+/// there of them is removed. A checkpoint says so from now on.
+void SequenceRun::BeginAnew() {
+  if (hooks_.tell) {
+    hooks_.tell(folder_.root() + ": loops of the camera are closed, which " +
+                "moves what it saw by up to " +
+                std::to_string(closure_.report.largest_change) +
+                " m: all frames are fused anew");
+  }
+  frames_.reset();  // Its thread uses the others.
+  const UsualMisfit misfit = work_->fusion.camera_misfit();
+  work_.reset();
+  directory_.reset();
+  work_ = make_();
+  work_->fusion.set_camera_misfit(misfit);
+  for (const char* name : {"checkpoints", "masks", "pictures", "problems",
+                           "solver", "uncertainty"}) {
+    std::filesystem::remove_all(
+        std::filesystem::path(folder_.unfinished().root()) / name);
+  }
+  OpenDirectory(/*goes_on=*/false);
+  coarse_.clear();
+  done_ = done_before_ = 0;
+  since_start_.Restart();
+  if (options_.checkpoint_every >= 0) {
+    SaveCheckpoint();
+  } else {
+    std::filesystem::remove(folder_.unfinished().Checkpoint());
+  }
+  frames_.emplace([this] { return ReadNext(); }, options_.reads_ahead);
+}
+
 /// @throw InputError if there was nothing to reconstruct.
 void SequenceRun::CheckReconstructed() const {
   if (!work_->fusion.surfaces().empty()) return;
@@ -316,7 +359,7 @@ void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
   folder_.CheckHeld();
   WriteSurfaces(status == RunStatus::kComplete);
   directory_->Finish({status, error, folder_.marker().resumed_at,
-                      SkippedFrames(work_->reader)},
+                      SkippedFrames(work_->reader), closure_.report},
                      WriteHtmlReport);
   WarnOfSkippedFrames();
   const bool published = folder_.Publish(status, error);
@@ -396,96 +439,6 @@ void SequenceRun::WriteFailure(const std::string& error) {
   } catch (const std::exception& second) {
     Warn(std::string("results cannot be written: ") + second.what());
   }
-}
-
-/// What a run begins with.
-std::string SequenceRun::ExpectedDepth() const {
-  const DepthOptions& depth = work_->reader.options().depth;
-  std::ostringstream text;
-  text << "expected depth from " << depth.min_depth << " to " << depth.max_depth
-       << " m (--min_depth, --max_depth, --depth_scale)";
-  return text.str();
-}
-
-/// Once a run.
-void SequenceRun::WarnOfMissingDepth(const Frame& frame) {
-  if (warned_of_depth_ || !work_->fusion.surfaces().empty()) return;
-  warned_of_depth_ = true;
-  Warn("frame " + std::to_string(frame.index) + ", " + frame.stem +
-       ": no background to begin with: " + ExpectedDepth() +
-       "; passed over until there is");
-}
-
-void SequenceRun::WarnOfLostSurfaces(const FrameReport& report) const {
-  for (const SurfaceReport& surface : report.surfaces) {
-    if (surface.state != TrackState::kLost) continue;
-    Warn("frame " + std::to_string(report.frame) + ": surface " +
-         std::to_string(surface.id) + " (" + surface.label +
-         ") lost: " + surface.reason);
-  }
-}
-
-/// Once a surface.
-void SequenceRun::WarnOfCoarseGraphs(int frame) {
-  for (const auto& [id, surface] : work_->fusion.surfaces()) {
-    const double planned = surface->planned_node_spacing();
-    const double spacing = surface->graph().node_spacing;
-    if (spacing <= planned || !coarse_.insert(id).second) continue;
-    std::ostringstream text;
-    text << "frame " << frame << ": surface " << id << " (" << surface->label()
-         << ") has nodes every " << 1000 * spacing << " mm instead of "
-         << 1000 * planned
-         << " mm, to keep --max_nodes=" << surface->graph_options().max_nodes;
-    Warn(text.str());
-  }
-}
-
-void SequenceRun::WarnOfUnknownClasses() const {
-  std::set<std::string> classes;
-  for (const auto& [id, surface] : work_->fusion.surfaces()) {
-    classes.insert(ClassKey(surface->label()));
-  }
-  for (const std::string& named : work_->fusion.energies().classes()) {
-    if (classes.count(named) > 0) continue;
-    Warn("terms of class " + named + " had no effect: there are surfaces of " +
-         AnyOf({classes.begin(), classes.end()}));
-  }
-}
-
-void SequenceRun::HearTerms(const FrameReport& report) {
-  for (const SurfaceReport& surface : report.surfaces) {
-    for (const TrackingRound& round : surface.rounds) {
-      for (const TermCost& term : round.solver.terms) {
-        if (term.residual_vectors > 0) heard_terms_.insert(term.term);
-      }
-    }
-  }
-}
-
-void SequenceRun::WarnOfSilentTerms() const {
-  std::set<std::string> silent = TermsInUse(work_->fusion.energies());
-  // Of the default energy a room alone, or known poses, leave some out.
-  for (const std::string& term : TermsInUse(
-           SurfaceEnergies::Parse(PipelineOptions().terms, BuiltinTerms()))) {
-    silent.erase(term);
-  }
-  for (const std::string& term : heard_terms_) silent.erase(term);
-  for (const std::string& term : silent) {
-    Warn("term " + term + " had no effect: it added no residuals in any frame");
-  }
-}
-
-void SequenceRun::WarnOfSkippedFrames() const {
-  const std::vector<BadFrame> skipped = work_->reader.skipped();
-  if (skipped.empty()) return;
-  Warn((skipped.size() == 1 ? "1 frame is left out: "
-                            : std::to_string(skipped.size()) +
-                                  " frames are left out, the first: ") +
-       skipped.front().reason);
-}
-
-void SequenceRun::Warn(const std::string& line) const {
-  if (hooks_.warn) hooks_.warn(line);
 }
 
 }  // namespace splitfusion

@@ -17,6 +17,7 @@
 #include "splitfusion/lib/report/run_directory.h"
 #include "splitfusion/lib/report/run_folder.h"
 #include "splitfusion/lib/report/surface_output.h"
+#include "splitfusion/pipelines/loop_closure.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 
 namespace splitfusion {
@@ -82,7 +83,8 @@ class SequenceRun {
   /// use, or from options.from.
   ///
   /// @param work what to compute with.
-  /// @param make makes `work` anew, where a checkpoint turns out to be broken.
+  /// @param make makes `work` anew, where a checkpoint turns out to be broken,
+  ///     or loops are closed.
   /// @param folder where to write, not finished; must outlive this.
   /// @throw InputError if a file cannot be written or read.
   SequenceRun(std::unique_ptr<Reconstruction> work, const Maker& make,
@@ -91,8 +93,9 @@ class SequenceRun {
 
   ~SequenceRun();  ///< Where Reconstruction is known.
 
-  /// All frames and the results. What was computed is kept, and the run marked
-  /// as failed or incomplete, if it ends before.
+  /// All frames and the results; all frames again if the camera's loops are
+  /// closed by more than a voxel of the background. What was computed is kept,
+  /// and the run marked as failed or incomplete, if it ends before.
   ///
   /// @throw InputError if a frame or a result cannot be read or written, or if
   ///     there was nothing to reconstruct.
@@ -103,7 +106,7 @@ class SequenceRun {
   RunSummary Summary() const { return directory_->Summary(); }
 
  private:
-  void OpenDirectory();
+  void OpenDirectory(bool goes_on);
   void WriteColorRegistration() const;
   bool Resume();
   void StartFromOther();
@@ -121,6 +124,9 @@ class SequenceRun {
   void WriteUncertainties(FrameReport* report) const;
   void ShowProgress() const;
   void ShowPass(RunPass pass, int done, int total) const;
+
+  bool FindLoops();
+  void BeginAnew();
 
   void CheckReconstructed() const;
   void WriteEnd();
@@ -146,6 +152,7 @@ class SequenceRun {
   void Warn(const std::string& line) const;
 
   std::unique_ptr<Reconstruction> work_;
+  Maker make_;
   RunFolder& folder_;
   SequenceRunOptions options_;
   SequenceRunHooks hooks_;
@@ -157,6 +164,7 @@ class SequenceRun {
   std::set<std::string> heard_terms_;                 // Those with residuals.
   std::set<std::pair<int, std::string>> not_frozen_;  // Surface and why.
   bool warned_of_depth_ = false;
+  LoopClosure closure_;  // Its poses are given once all is fused anew.
   int done_ = 0;
   int done_before_ = 0;  // By the run this one goes on with.
   std::string where_;    // Folder of what was written.

@@ -62,7 +62,7 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   }
   AddNewSurfaces(frame, &report);
   Record(frame, &report);
-  KeepSights(report);
+  KeepSights(frame.world_from_camera.has_value(), report);
   tracker_->Keep(live_);
   report.total_seconds =
       report.read_seconds + report.segment_seconds + stopwatch.Seconds();

@@ -18,6 +18,7 @@
 #include "splitfusion/lib/split/surface_splitter.h"
 #include "splitfusion/lib/tracking/motion_predictor.h"
 #include "splitfusion/lib/tracking/usual_misfit.h"
+#include "splitfusion/pipelines/loop_closure.h"
 #include "splitfusion/pipelines/pipeline_options.h"
 #include "splitfusion/pipelines/prepared_frame.h"
 #include "splitfusion/pipelines/registries.h"
@@ -63,6 +64,17 @@ class SplitFusion {
   /// The rest of it.
   FrameReport ProcessFrame(PreparedFrame prepared);
 
+  /// Once all frames are known: the poses of those in which the camera was
+  /// tracked, without drift; none of a background that deforms, or without
+  /// PipelineOptions::close_loops.
+  LoopClosure CloseCameraLoops() const;
+
+  /// How well the camera's view usually fits, as found in a first pass over the
+  /// same frames: given poses do not tell. Before the first frame.
+  void set_camera_misfit(const UsualMisfit& misfit) { camera_misfit_ = misfit; }
+  /// The same so far.
+  const UsualMisfit& camera_misfit() const { return camera_misfit_; }
+
   /// Once all frames are known: the poses of frames in which the camera was
   /// lost go smoothly from the last known one to the next, see PoseAmid().
   void PlaceLostCamera();
@@ -95,7 +107,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 19;  // Format.
+  static constexpr std::uint32_t kStateVersion = 20;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one
@@ -174,8 +186,9 @@ class SplitFusion {
   void Fuse(FrameReport* report);
   /// Tells surfaces what became of their tracks.
   void FollowTracks();
-  /// What objects in plain view look like.
-  void KeepSights(const FrameReport& report);
+  /// What objects in plain view look like, and what the camera saw. `given`: it
+  /// was not tracked.
+  void KeepSights(bool given, const FrameReport& report);
   /// Whether the live pixels of a surface show about as much of it as usual.
   bool InPlainView(const SurfaceReport& report) const;
   void ReanchorLostSurfaces(FrameReport* report);

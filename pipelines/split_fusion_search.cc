@@ -148,11 +148,16 @@ bool SplitFusion::InPlainView(const SurfaceReport& report) const {
   return report.pixels >= least;
 }
 
-void SplitFusion::KeepSights(const FrameReport& report) {
+void SplitFusion::KeepSights(bool given, const FrameReport& report) {
   if (background_state_ == TrackState::kTracked && !report.surfaces.empty()) {
     const SurfaceReport& background = report.surfaces.front();
     if (!background.rounds.empty()) camera_misfit_.Add(background.misfit);
     if (surfaces_.at(0)->graph().rigid()) {
+      if (options_.close_loops && !given) {
+        const bool goes_on =
+            !camera_was_lost_ && background.event != "relocalized";
+        tracker_->KeepOnPath(*surfaces_.at(0), live_, report.frame, goes_on);
+      }
       tracker_->KeepCamera(*surfaces_.at(0), live_);
     }
   }
@@ -187,6 +192,17 @@ void SplitFusion::ReanchorLostSurfaces(FrameReport* report) {
     tracker_->Forget(object.id);
     predictors_.erase(object.id);
   }
+}
+
+LoopClosure SplitFusion::CloseCameraLoops() const {
+  const auto found = surfaces_.find(0);
+  if (found == surfaces_.end() || !found->second->graph().rigid()) return {};
+  std::map<int, Rigid3d> tracked = PosesByFrame();
+  for (const FrameMotions& frame : found->second->history().frames) {
+    if (!frame.tracked) tracked.erase(frame.frame);
+  }
+  return CloseLoops(tracker_->CameraPath(camera_), tracked, camera_.noise,
+                    options_.key_frames);
 }
 
 void SplitFusion::PlaceLostCamera() {

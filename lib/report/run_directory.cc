@@ -204,6 +204,7 @@ void RunDirectory::Finish(const RunEnding& ending,
   facts.error = ending.error;
   facts.resumed_at = ending.resumed_at;
   facts.skipped_frames = ending.skipped_frames;
+  facts.loops = ending.loops;
   const nlohmann::ordered_json summary = ToJson(facts);
   if (write_page) write_page(paths_, summary);
   WriteJson(paths_.Summary(), Versioned(summary), 2);

@@ -30,6 +30,7 @@ struct RunEnding {
   std::string error;                        ///< Of a failed run, one line.
   std::vector<int> resumed_at;              ///< Frames from which it went on.
   std::vector<int> skipped_frames;          ///< Left out: images not usable.
+  LoopReport loops = {};                    ///< Of the camera's path.
 };
 
 /// Whether the summary of a run is there and says that it is complete.

@@ -84,6 +84,20 @@ double SecondsOfAllPasses(const RunSummary& summary) {
              std::max(1, summary.frames);
 }
 
+Json ToJson(const LoopReport& loops) {
+  return {{"key_frames", loops.key_frames},
+          {"compared", loops.compared},
+          {"found", loops.found},
+          {"kept", loops.kept},
+          {"misfit_before", loops.misfit_before},
+          {"misfit_after", loops.misfit_after},
+          {"largest_drift", loops.largest_drift},
+          {"largest_change", loops.largest_change},
+          {"largest_shift", loops.largest_shift},
+          {"largest_turn", loops.largest_turn},
+          {"fused_anew", loops.fused_anew}};
+}
+
 }  // namespace
 
 std::string VerdictLine(const RunSummary& summary) {
@@ -119,6 +133,7 @@ Json ToJson(const RunSummary& summary) {
           {"resumed_at", summary.resumed_at},
           {"skipped_frames", summary.skipped_frames},
           {"preset", summary.preset},
+          {"loops", ToJson(summary.loops)},
           {"frames", summary.frames},
           {"verdict", VerdictLine(summary)},
           {"lost_frames", summary.lost_frames},

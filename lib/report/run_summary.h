@@ -12,6 +12,7 @@
 #include "splitfusion/lib/geometry/stretched_area.h"
 #include "splitfusion/lib/report/frame_parts.h"
 #include "splitfusion/lib/report/frame_report.h"
+#include "splitfusion/lib/report/loop_report.h"
 
 namespace splitfusion {
 
@@ -65,6 +66,7 @@ struct RunSummary {
   std::string error;                ///< Of a failed run, one line.
   std::vector<int> resumed_at;      ///< Frames from which the run went on.
   std::vector<int> skipped_frames;  ///< Left out: images not usable.
+  LoopReport loops;                 ///< Without key frames: not looked for.
   std::string preset;               ///< Name of the preset.
   std::map<std::string, std::string> versions;  ///< Library -> version.
   int frames = 0;                               ///< Frames processed.

@@ -66,6 +66,23 @@ double SeenShare(const cv::Mat_<float>& depth, const Rigid3d& motion,
   return points > 0 ? static_cast<double>(seen) / points : 1;
 }
 
+/// What a frame shows of the background, coarsely, and the same behind the
+/// camera: turns and shifts of the camera then weigh apart. (Before it alone a
+/// shift can undo a turn almost, and a camera that turned would be moved.)
+TypicalPoints PointsShown(const cv::Mat_<float>& depth,
+                          const PinholeCamera& camera) {
+  std::vector<Eigen::Vector3f> points;
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 0; u < depth.cols; ++u) {
+      if (!(depth(v, u) > 0)) continue;
+      const Eigen::Vector3f point = camera.BackProject<float>(
+          u * kOverlapStride, v * kOverlapStride, depth(v, u));
+      points.insert(points.end(), {point, -point});
+    }
+  }
+  return TypicalPointsOf(points);
+}
+
 }  // namespace
 
 void KeyFrameOptions::List(OptionList* list) {
@@ -104,8 +121,51 @@ void KeyFrames::Keep(const LiveView& live, const Rigid3d& camera_from_world) {
                          ThumbnailOf(live), depth, latest_pose_});
 }
 
-std::vector<const KeyFrames::KeyFrame*> KeyFrames::MostAlike(
-    const LiveView& live) const {
+void KeyFrames::KeepOnPath(const LiveView& live,
+                           const Rigid3d& camera_from_world, int frame,
+                           bool goes_on) {
+  const std::optional<Sight> sight = SightOf(kBackground, live);
+  if (options_.overlap == 0 || !sight) return;
+  const bool known = latest_on_path_.frame >= 0;
+  // Where the camera was last before it was lost.
+  if (known && !goes_on && latest_on_path_.frame != path_.back().frame) {
+    path_.push_back(LatestOnPath(live.camera));
+  }
+  PathFrame now;
+  now.frame = frame;
+  now.goes_on = known && goes_on;
+  now.view.thumbnail = ThumbnailOf(live);
+  now.view.depth = CoarseDepth(live);
+  now.view.pose = camera_from_world.matrix();
+  now.points = PointsShown(now.view.depth, live.camera);
+  latest_on_path_ = now;
+  if (now.goes_on) {
+    const KeyFrame& before = path_.back().view;
+    const Rigid3d motion = Rigid3d(before.pose) * camera_from_world.inverse();
+    if (SeenShare(now.view.depth, motion, before.depth, live.camera) >=
+        options_.overlap) {
+      return;
+    }
+  }
+  now.view.landmarks = LandmarksOf(*sight, live.camera, options_.landmarks);
+  path_.push_back(std::move(now));
+}
+
+PathFrame KeyFrames::LatestOnPath(const PinholeCamera& camera) const {
+  PathFrame latest = latest_on_path_;
+  latest.view.landmarks = LandmarksOf(latest_, camera, options_.landmarks);
+  return latest;
+}
+
+std::vector<PathFrame> KeyFrames::Path(const PinholeCamera& camera) const {
+  std::vector<PathFrame> path = path_;
+  if (!path.empty() && latest_on_path_.frame != path.back().frame) {
+    path.push_back(LatestOnPath(camera));
+  }
+  return path;
+}
+
+std::vector<const KeyFrame*> KeyFrames::MostAlike(const LiveView& live) const {
   const cv::Mat_<float> thumbnail = ThumbnailOf(live);
   std::vector<std::pair<double, const KeyFrame*>> alike;
   for (const KeyFrame& other : key_frames_) {

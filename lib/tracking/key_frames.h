@@ -9,6 +9,7 @@
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/geometry/rigid3.h"
+#include "splitfusion/lib/geometry/typical_points.h"
 #include "splitfusion/lib/tracking/sight.h"
 
 namespace splitfusion {
@@ -27,6 +28,35 @@ struct KeyFrameOptions {
   void List(OptionList* list);
 };
 
+/// What a frame of the static scene showed, and from where.
+struct KeyFrame {
+  Landmarks landmarks;        ///< Of the background.
+  cv::Mat_<float> thumbnail;  ///< One row, mean 0, length 1.
+  cv::Mat_<float> depth;      ///< Coarse, metres.
+  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();  ///< Camera from world.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(landmarks, thumbnail, depth, pose);
+  }
+};
+
+/// A frame on the way of the camera: a node of the pose graph.
+struct PathFrame {
+  int frame = -1;        ///< Index in the sequence.
+  bool goes_on = false;  ///< Tracked all the way from the one before.
+  /// How far off what it shows is, all about the camera, metres.
+  TypicalPoints points = TypicalPoints::Zero();
+  KeyFrame view;  ///< With its landmarks.
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(frame, goes_on, points, view);
+  }
+};
+
 /// Frames of the static scene that differ in what they show, by which a camera
 /// that jumped or was lost is found: those that look most alike as a whole
 /// (small images, as in Klein and Murray 2008) are compared by features.
@@ -39,6 +69,15 @@ class KeyFrames {
   /// shows what no key frame does; in any case it is the latest one.
   void Keep(const LiveView& live, const Rigid3d& camera_from_world);
 
+  /// The same frame as one on the camera's path, before Keep(). On it are
+  /// those that show much that the one before on it does not, and those before
+  /// and after the camera was lost. `goes_on`: it was not since the latest one.
+  void KeepOnPath(const LiveView& live, const Rigid3d& camera_from_world,
+                  int frame, bool goes_on);
+
+  /// The camera's path so far, up to the latest frame.
+  std::vector<PathFrame> Path(const PinholeCamera& camera) const;
+
   /// Where the camera may be (camera from world, metres), the place on which
   /// most landmarks agree first.
   std::vector<Rigid3d> Find(const LiveView& live) const;
@@ -49,29 +88,22 @@ class KeyFrames {
   /// Saves or restores them, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(key_frames_, latest_, latest_pose_);
+    (*archive)(key_frames_, latest_, latest_pose_, path_, latest_on_path_);
   }
 
  private:
-  struct KeyFrame {
-    Landmarks landmarks;
-    cv::Mat_<float> thumbnail;  // One row, mean 0, length 1.
-    cv::Mat_<float> depth;      // Coarse, metres.
-    Eigen::Matrix4d pose;       // Camera from world.
-
-    template <typename Archive>
-    void Serialize(Archive* archive) {
-      (*archive)(landmarks, thumbnail, depth, pose);
-    }
-  };
-
   /// Key frames by how alike they look as a whole, at most `candidates`.
   std::vector<const KeyFrame*> MostAlike(const LiveView& live) const;
+
+  /// The latest frame with its landmarks.
+  PathFrame LatestOnPath(const PinholeCamera& camera) const;
 
   KeyFrameOptions options_;
   std::vector<KeyFrame> key_frames_;
   Sight latest_;                                           // May be empty.
   Eigen::Matrix4d latest_pose_ = Eigen::Matrix4d::Zero();  // Likewise.
+  std::vector<PathFrame> path_;
+  PathFrame latest_on_path_;  // Without landmarks; frame -1: none.
 };
 
 }  // namespace splitfusion

@@ -67,8 +67,11 @@ std::optional<LandmarkMotion> FindLandmarkMotion(const Landmarks& before,
   }
   const std::vector<RigidPart> found = FindRigidParts(matches, noise, whole);
   if (found.empty()) return {};
-  return LandmarkMotion{found.front().motion,
-                        static_cast<int>(found.front().points.size())};
+  const RigidPart& part = found.front();
+  std::vector<Eigen::Vector3f> agreeing;
+  for (const int i : part.points) agreeing.push_back(matches[i].from);
+  return LandmarkMotion{part.motion, static_cast<int>(part.points.size()),
+                        TypicalPointsOf(agreeing)};
 }
 
 }  // namespace splitfusion

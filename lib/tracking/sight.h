@@ -9,6 +9,7 @@
 
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/geometry/rigid3.h"
+#include "splitfusion/lib/geometry/typical_points.h"
 #include "splitfusion/lib/tracking/image_features.h"
 
 namespace splitfusion {
@@ -49,8 +50,9 @@ Landmarks LandmarksOf(const Sight& sight, const PinholeCamera& camera,
 
 /// A motion by which landmarks went from one place to another.
 struct LandmarkMotion {
-  Rigid3d motion;  ///< Of the camera frame, metres.
-  int points = 0;  ///< That agree.
+  Rigid3d motion;       ///< Of the camera frame, metres.
+  int points = 0;       ///< That agree.
+  TypicalPoints where;  ///< Where these were before, camera frame, metres.
 };
 
 /// The rigid motion, camera frame, on which most matches of features agree that

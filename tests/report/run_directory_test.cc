@@ -75,7 +75,7 @@ TEST(RunDirectory, FinishWritesTheSummaryOfTheContract) {
   for (const char* key :
        {"complete", "frames", "lost_frames", "seconds_per_frame",
         "seconds_writing", "peak_memory_bytes", "surfaces", "versions",
-        "preset", "status", "error", "resumed_at"}) {
+        "preset", "status", "error", "resumed_at", "loops"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   for (const char* key : {"read", "segment", "split", "render", "associate",

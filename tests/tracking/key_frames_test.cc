@@ -68,5 +68,37 @@ TEST(KeyFrames, AreNoneWithoutOverlap) {
   EXPECT_TRUE(frames.Find(ViewOfWorld(pose)).empty());
 }
 
+TEST(KeyFrames, OnThePathAreTurnsAndEndsOfWhatIsTracked) {
+  KeyFrames frames{KeyFrameOptions()};
+  const auto keep = [&](int frame, double x, bool goes_on = true) {
+    const Rigid3d pose = PoseOfPlate(0, x);
+    const LiveView live = ViewOfWorld(pose);
+    frames.KeepOnPath(live, pose, frame, goes_on);
+    frames.Keep(live, pose);
+  };
+  // One half of the plate, the other, and back: no new key frame, but another
+  // one on the path.
+  keep(0, 0.78);
+  keep(1, -0.78);
+  keep(2, 0.78);
+  keep(3, 0.77);
+  // Lost, and found in the same place.
+  keep(4, 0.76);
+  keep(7, 0.76, /*goes_on=*/false);
+  keep(8, 0.77);
+  const std::vector<PathFrame> path = frames.Path(kSightCamera);
+  std::vector<int> indices;
+  std::vector<bool> go_on;
+  for (const PathFrame& frame : path) {
+    indices.push_back(frame.frame);
+    go_on.push_back(frame.goes_on);
+    EXPECT_FALSE(frame.view.landmarks.points.empty());
+    EXPECT_GT(frame.points.norm(), 1);
+  }
+  EXPECT_EQ(indices, (std::vector<int>{0, 1, 2, 4, 7, 8}));
+  EXPECT_EQ(go_on, (std::vector<bool>{false, true, true, true, false, true}));
+  EXPECT_EQ(frames.size(), 2);
+}
+
 }  // namespace
 }  // namespace splitfusion
