@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -57,6 +55,18 @@ std::vector<PoseEdge> LandmarkEdges(
   return edges;
 }
 
+/// Motions between neighbours as they were tracked.
+std::vector<PoseEdge> TrackedEdges(const std::vector<PathFrame>& path,
+                                   const std::vector<Rigid3d>& poses) {
+  std::vector<PoseEdge> edges;
+  for (int i = 1; i < static_cast<int>(path.size()); ++i) {
+    if (!path[i].goes_on) continue;
+    edges.push_back(
+        {i - 1, i, poses[i] * poses[i - 1].inverse(), path[i - 1].points});
+  }
+  return edges;
+}
+
 /// Root mean square of contradictions.
 double RmsContradiction(const std::vector<Rigid3d>& poses,
                         const std::vector<PoseEdge>& edges) {
@@ -68,42 +78,73 @@ double RmsContradiction(const std::vector<Rigid3d>& poses,
   return edges.empty() ? 0 : std::sqrt(sum / static_cast<double>(edges.size()));
 }
 
-/// The motion between none and all of `all`.
-Rigid3d PartOfCorrection(const Rigid3d& none, const Rigid3d& all,
-                         double share) {
-  Rigid3d between = Rigid3d::Identity();
-  between.linear() = Eigen::Quaterniond(none.linear())
-                         .slerp(share, Eigen::Quaterniond(all.linear()))
-                         .toRotationMatrix();
-  between.translation() =
-      (1 - share) * none.translation() + share * all.translation();
-  return between;
+/// A part of the way from one correction to the next.
+Rigid3d PartOfCorrection(const Rigid3d& from, const Rigid3d& to, double share) {
+  Rigid3d part = Rigid3d::Identity();
+  part.linear() = Eigen::Quaterniond(from.linear())
+                      .slerp(share, Eigen::Quaterniond(to.linear()))
+                      .toRotationMatrix();
+  part.translation() =
+      (1 - share) * from.translation() + share * to.translation();
+  return part;
+}
+
+/// Corrects all poses, world from camera. `corrections`: of camera frames, by
+/// frame, of some.
+void CorrectBetween(const std::map<int, Rigid3d>& corrections,
+                    std::map<int, Rigid3d>* world_from_camera) {
+  for (auto& [frame, pose] : *world_from_camera) {
+    auto next = corrections.lower_bound(frame);
+    if (next == corrections.end()) --next;
+    const auto last = next == corrections.begin() ? next : std::prev(next);
+    const double span = next->first - last->first;
+    const double share =
+        span > 0 && frame < next->first ? (frame - last->first) / span : 1;
+    pose = pose * PartOfCorrection(last->second, next->second, share).inverse();
+  }
+}
+
+/// Takes poses of key frames, camera from world, for those that they had, and
+/// reports on it.
+void Correct(const std::vector<PathFrame>& path,
+             const std::vector<Rigid3d>& before,
+             const std::vector<Rigid3d>& after, LoopClosure* closure) {
+  LoopReport& report = closure->report;
+  std::map<int, Rigid3d> corrections;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Rigid3d change = after[i] * before[i].inverse();
+    const Rigid3d from = before[i].inverse(), to = after[i].inverse();
+    const TypicalPoints& points = path[i].points;
+    report.largest_change =
+        std::max(report.largest_change, (change * points - points).norm() / 2);
+    report.largest_shift = std::max(
+        report.largest_shift, (to.translation() - from.translation()).norm());
+    report.largest_turn =
+        std::max(report.largest_turn, RotationAngle(change.linear()));
+    corrections[path[i].frame] = change;
+  }
+  CorrectBetween(corrections, &closure->world_from_camera);
 }
 
 }  // namespace
 
 LoopClosure CloseLoops(const std::vector<PathFrame>& path,
                        const std::map<int, Rigid3d>& tracked,
-                       const DepthNoise& noise,
-                       const KeyFrameOptions& options) {
+                       const DepthNoise& noise, const KeyFrameOptions& options,
+                       double reach) {
   LoopClosure closure;
   LoopReport& report = closure.report;
   closure.world_from_camera = tracked;
-  report.key_frames = static_cast<int>(path.size());
   if (path.empty()) return closure;
   std::vector<Rigid3d> before;
   for (const PathFrame& frame : path) before.emplace_back(frame.view.pose);
   const auto pairs = PairsToCompare(path, options.candidates);
   const std::vector<PoseEdge> found =
       LandmarkEdges(path, pairs, noise, options);
-  std::vector<PoseEdge> edges = found;
-  for (int i = 1; i < static_cast<int>(path.size()); ++i) {
-    if (!path[i].goes_on) continue;
-    edges.push_back(
-        {i - 1, i, before[i] * before[i - 1].inverse(), path[i - 1].points});
-  }
-  const double distance =
-      (getenv("SFD") ? atof(getenv("SFD")) : 3) * kAgreeingDistance;
+  std::vector<PoseEdge> edges = TrackedEdges(path, before);
+  edges.insert(edges.end(), found.begin(), found.end());
+  // Drift may be as much from one key frame to the next.
+  const double distance = 3 * kAgreeingDistance;
   const std::vector<Rigid3d> after = SolvePoseGraph(before, edges, distance);
   std::vector<PoseEdge> kept;
   for (const PoseEdge& edge : found) {
@@ -112,62 +153,15 @@ LoopClosure CloseLoops(const std::vector<PathFrame>& path,
     report.largest_drift =
         std::max(report.largest_drift, Contradiction(before, edge));
   }
-  if (getenv("SFDUMP")) {
-    FILE* f = fopen(getenv("SFDUMP"), "w");
-    const auto mat = [&](const auto& m) {
-      for (int r = 0; r < m.rows(); ++r)
-        for (int c = 0; c < m.cols(); ++c) fprintf(f, " %.9g", m(r, c));
-    };
-    for (size_t i = 0; i < path.size(); ++i) {
-      fprintf(f, "node %d %d", path[i].frame, path[i].goes_on);
-      mat(before[i].matrix()), mat(path[i].points);
-      fprintf(f, "\n");
-    }
-    for (const PoseEdge& e : edges) {
-      fprintf(f, "edge %d %d %d", e.from, e.to, e.may_be_wrong);
-      mat(e.motion.matrix()), mat(e.points);
-      fprintf(f, "\n");
-    }
-    for (const auto& [frame, pose] : tracked) {
-      fprintf(f, "pose %d", frame);
-      mat(pose.matrix());
-      fprintf(f, "\n");
-    }
-    fclose(f);
-  }
+  report.key_frames = static_cast<int>(path.size());
   report.compared = static_cast<int>(pairs.size());
   report.found = static_cast<int>(found.size());
   report.kept = static_cast<int>(kept.size());
   report.misfit_before = RmsContradiction(before, kept);
   report.misfit_after = RmsContradiction(after, kept);
-  // Less is what landmarks are uncertain by, and what correspondences reach
-  // from old places: there the camera has come back already.
-  if (report.largest_drift <= distance) return closure;
-  std::map<int, Rigid3d> corrections;  // Of camera frames.
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const Rigid3d change = after[i] * before[i].inverse();
-    const Rigid3d moved = after[i].inverse() * before[i];
-    const TypicalPoints& points = path[i].points;
-    corrections[path[i].frame] = change;
-    report.largest_change =
-        std::max(report.largest_change, (change * points - points).norm() / 2);
-    report.largest_shift = std::max(
-        report.largest_shift,
-        (after[i].inverse().translation() - before[i].inverse().translation())
-            .norm());
-    report.largest_turn =
-        std::max(report.largest_turn, RotationAngle(moved.linear()));
-  }
-  for (auto& [frame, pose] : closure.world_from_camera) {
-    auto next = corrections.lower_bound(frame);
-    if (next == corrections.end()) --next;
-    const auto last = next == corrections.begin() ? next : std::prev(next);
-    const double span = next->first - last->first;
-    const double share =
-        span > 0 && frame < next->first ? (frame - last->first) / span : 1;
-    const Rigid3d change = PartOfCorrection(last->second, next->second, share);
-    pose = pose * change.inverse();
-  }
+  // What correspondences reach they have closed; the rest is what landmarks are
+  // uncertain by.
+  if (report.largest_drift > reach) Correct(path, before, after, &closure);
   return closure;
 }
 

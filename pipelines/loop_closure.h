@@ -26,14 +26,16 @@ struct LoopClosure {
 /// Closes the loops of a camera's path, see SolvePoseGraph(): key frames that
 /// follow each other are as far apart as they were tracked, unless the camera
 /// was lost between them, and pairs that look alike as their landmarks say.
-/// Poses stay as they are where no such pair contradicts them for sure.
+/// Poses stay as they are unless such a pair contradicts them by more than
+/// `reach`, metres, from where tracking would have found back by itself.
 ///
 /// @param tracked of frames in which the camera was tracked, world from camera.
 /// @return poses of these frames; the first key frame's stays as it was, and
 ///     between two of them the correction changes evenly.
 LoopClosure CloseLoops(const std::vector<PathFrame>& path,
                        const std::map<int, Rigid3d>& tracked,
-                       const DepthNoise& noise, const KeyFrameOptions& options);
+                       const DepthNoise& noise, const KeyFrameOptions& options,
+                       double reach);
 
 }  // namespace splitfusion
 

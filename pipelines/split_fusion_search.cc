@@ -202,7 +202,7 @@ LoopClosure SplitFusion::CloseCameraLoops() const {
     if (!frame.tracked) tracked.erase(frame.frame);
   }
   return CloseLoops(tracker_->CameraPath(camera_), tracked, camera_.noise,
-                    options_.key_frames);
+                    options_.key_frames, options_.tracker.rigid_distance);
 }
 
 void SplitFusion::PlaceLostCamera() {

@@ -11,8 +11,9 @@ namespace {
 const TermOptions kTemporalArap{"temporal_arap", /*weight=*/3,
                                 LossKind::kTrivial, 0.01};
 
-double Energy(const DeformationGraph& graph,
-              const std::vector<NodeMotion>* before, double anneal) {
+double TemporalArapEnergy(const DeformationGraph& graph,
+                          const std::vector<NodeMotion>* before,
+                          double anneal) {
   return EnergyOf(
       graph, ResidualsOf(TemporalArapTerm(),
                          {graph, {}, PinholeCamera(), nullptr, before, anneal},
@@ -42,7 +43,7 @@ TEST(TemporalArapTerm, IsEquationSixWithTheEdgesOfTheFrameBefore) {
     }
   }
   const double expected = (kAnneal - 1) * 3.0 / edges * sum / (0.01 * 0.01);
-  EXPECT_NEAR(Energy(graph, &before.motions, kAnneal), expected,
+  EXPECT_NEAR(TemporalArapEnergy(graph, &before.motions, kAnneal), expected,
               1e-9 * expected);
 }
 
@@ -51,18 +52,18 @@ TEST(TemporalArapTerm, ABendThatMovesAlongCostsNothing) {
   Shake(0.2, /*seed=*/5, &before);
   DeformationGraph moved = before;
   ApplyRigidMotion(MakeMotion({0.4, -1.2, 0.3}, {1, 2, -3}), &moved);
-  EXPECT_NEAR(Energy(moved, &before.motions, 8), 0, 1e-9);
+  EXPECT_NEAR(TemporalArapEnergy(moved, &before.motions, 8), 0, 1e-9);
 }
 
 TEST(TemporalArapTerm, IsGoneWithoutAnnealingAndWithoutAFrameBefore) {
   DeformationGraph graph = PlateGraph();
   const std::vector<NodeMotion> before = graph.motions;
   Shake(0.2, /*seed=*/7, &graph);
-  EXPECT_EQ(Energy(graph, &before, 1), 0);
-  EXPECT_EQ(Energy(graph, nullptr, 8), 0);
-  EXPECT_GT(Energy(graph, &before, 8), 0);
+  EXPECT_EQ(TemporalArapEnergy(graph, &before, 1), 0);
+  EXPECT_EQ(TemporalArapEnergy(graph, nullptr, 8), 0);
+  EXPECT_GT(TemporalArapEnergy(graph, &before, 8), 0);
   const DeformationGraph rigid = MakeRigidGraph(Rigid3d::Identity());
-  EXPECT_EQ(Energy(rigid, &rigid.motions, 8), 0);
+  EXPECT_EQ(TemporalArapEnergy(rigid, &rigid.motions, 8), 0);
 }
 
 }  // namespace

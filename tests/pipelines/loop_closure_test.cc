@@ -11,6 +11,7 @@ namespace splitfusion {
 namespace {
 
 constexpr int kPathFrames = 21;
+constexpr double kReach = 0.05;
 
 /// Where a frame was tracked that is somewhere else, camera from plate.
 using Drift = std::function<Rigid3d(int frame, const Rigid3d& truth)>;
@@ -34,7 +35,7 @@ LoopClosure Close(const Drift& drift, int lost_before = -1) {
     tracked[i] = pose.inverse();
   }
   return CloseLoops(frames.Path(kSightCamera), tracked, kSightCamera.noise,
-                    KeyFrameOptions());
+                    KeyFrameOptions(), kReach);
 }
 
 /// Largest distance of a camera from where it was, metres.
@@ -80,7 +81,7 @@ TEST(LoopClosure, BelievesLandmarksWhereTheCameraWasLost) {
 }
 
 TEST(LoopClosure, OfNoPathIsNothing) {
-  const LoopClosure closure = CloseLoops({}, {}, DepthNoise(), {});
+  const LoopClosure closure = CloseLoops({}, {}, DepthNoise(), {}, kReach);
   EXPECT_EQ(closure.report.key_frames, 0);
   EXPECT_TRUE(closure.world_from_camera.empty());
 }
