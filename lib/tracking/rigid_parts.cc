@@ -1,5 +1,6 @@
 #include "splitfusion/lib/tracking/rigid_parts.h"
 
+#include <pcl/console/print.h>
 #include <pcl/point_types.h>
 #include <pcl/sample_consensus/ransac.h>
 #include <pcl/sample_consensus/sac_model_registration.h>
@@ -45,6 +46,12 @@ std::vector<int> SpreadSeeds(const std::vector<PointMotion>& motions,
 std::optional<Rigid3d> MotionAbout(const std::vector<PointMotion>& motions,
                                    const Eigen::Vector3f& seed, double inlier,
                                    const RigidPartOptions& options) {
+  // That there is no consensus is an answer, and no error to be printed.
+  static const bool silent = [] {
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+    return true;
+  }();
+  static_cast<void>(silent);
   const auto from = pcl::make_shared<Cloud>(), to = pcl::make_shared<Cloud>();
   for (const PointMotion& motion : motions) {
     if ((motion.from - seed).norm() > options.radius) continue;
