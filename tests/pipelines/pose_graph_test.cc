@@ -15,7 +15,7 @@ constexpr int kPoses = 24;
 constexpr double kDistance = 0.06;
 
 /// All about the camera.
-TypicalPoints Room() {
+TypicalPoints RoomPoints() {
   return TypicalPointsOf({{-2, -1, 0}, {2, 1, 0}, {0, 1, 2}, {0, -1, -2}});
 }
 
@@ -34,7 +34,7 @@ Rigid3d MotionBetween(const std::vector<Rigid3d>& poses, int from, int to) {
 }
 
 PoseEdge Loop(int from, int to, const Rigid3d& motion) {
-  return {from, to, motion, Room(), /*may_be_wrong=*/true};
+  return {from, to, motion, RoomPoints(), /*may_be_wrong=*/true};
 }
 
 /// Tracked with a drift in every step: `poses` and the edges between.
@@ -46,7 +46,7 @@ struct DriftingChain {
     for (int i = 1; i < kPoses; ++i) {
       const Rigid3d step = drift * MotionBetween(truth, i - 1, i);
       poses.push_back(step * poses.back());
-      edges.push_back({i - 1, i, step, Room()});
+      edges.push_back({i - 1, i, step, RoomPoints()});
     }
   }
   std::vector<Rigid3d> poses;
@@ -59,7 +59,7 @@ double LargestPoseError(const std::vector<Rigid3d>& poses) {
   double largest = 0;
   for (int i = 0; i < kPoses; ++i) {
     const TypicalPoints off =
-        poses[i].inverse() * Room() - truth[i].inverse() * Room();
+        poses[i].inverse() * RoomPoints() - truth[i].inverse() * RoomPoints();
     largest = std::max(largest, off.norm() / 2);
   }
   return largest;
