@@ -43,13 +43,15 @@ struct BlockRay {
 };
 
 /// Blocks that the band around the pixels of one row passes through and that
-/// are not in the volume yet, as often as a pixel does.
+/// are not in the volume yet, as often as a pixel does; as often as it takes
+/// where a block is too far away for twice as many pixels.
 std::vector<openvdb::Coord> MissingInRow(const DepthObservation& observation,
                                          const Rigid3d& canonical_from_camera,
                                          const TsdfVolume& volume, int v) {
   const double block = kLeafSize * volume.options().voxel_size;
   const double truncation = volume.options().truncation;
   const internal::LeafTable& table = volume.grids().table;
+  const int least = volume.options().min_block_pixels;
   const float* depth = observation.depth[v];
   const std::uint8_t* role = observation.role[v];
   std::vector<openvdb::Coord> missing;
@@ -63,6 +65,9 @@ std::vector<openvdb::Coord> MissingInRow(const DepthObservation& observation,
                observation.camera.BackProject<double>(u, v, 1) / block;
     const double z_begin = depth[u] - truncation;
     const double z_end = depth[u] + truncation;
+    const double width =
+        observation.camera.fx * block / (kPixelStride * depth[u]);
+    const int count = width * width < 2 * least ? least : 1;
     openvdb::Coord last;
     for (double z = z_begin;; z += 0.5 * block) {
       const auto [x, y, z_place] = ray.At(std::min(z, z_end));
@@ -70,7 +75,9 @@ std::vector<openvdb::Coord> MissingInRow(const DepthObservation& observation,
                                   kLeafSize * z_place);
       const bool again = z > z_begin && origin == last;
       last = origin;
-      if (!again && table.Find(x, y, z_place) == 0) missing.push_back(origin);
+      if (!again && table.Find(x, y, z_place) == 0) {
+        missing.insert(missing.end(), count, origin);
+      }
       if (z >= z_end) break;
     }
   }
