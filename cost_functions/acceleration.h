@@ -49,10 +49,9 @@ class AccelerationTerm : public EnergyTerm {
         input.before == nullptr || input.graph.rigid()) {
       return false;
     }
-    const FrameMotions* last = context.history->Find(1);
-    const FrameMotions* earlier = context.history->Find(2);
-    return last != nullptr && earlier != nullptr && last->tracked &&
-           earlier->tracked &&
+    const auto last = context.history->Find(1);
+    const auto earlier = context.history->Find(2);
+    return last && earlier && last->tracked && earlier->tracked &&
            context.frame->index - last->frame == last->frame - earlier->frame;
   }
 };

@@ -392,11 +392,10 @@ std::map<int, Rigid3d> SplitFusion::PosesByFrame() const {
   const auto background = surfaces_.find(0);
   if (background == surfaces_.end()) return poses;
   // It has an entry for every frame since its birth, as the trajectory has.
-  const std::vector<FrameMotions>& frames =
-      background->second->history().frames;
+  const MotionLog& frames = background->second->history();
   const std::size_t before = trajectory_.size() - frames.size();
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    poses[frames[i].frame] = trajectory_[before + i].world_from_camera;
+  for (int i = 0; i < frames.size(); ++i) {
+    poses[frames.frame(i)] = trajectory_[before + i].world_from_camera;
   }
   return poses;
 }

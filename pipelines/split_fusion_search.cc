@@ -198,8 +198,9 @@ LoopClosure SplitFusion::CloseCameraLoops() const {
   const auto found = surfaces_.find(0);
   if (found == surfaces_.end() || !found->second->graph().rigid()) return {};
   std::map<int, Rigid3d> tracked = PosesByFrame();
-  for (const FrameMotions& frame : found->second->history().frames) {
-    if (!frame.tracked) tracked.erase(frame.frame);
+  const MotionLog& frames = found->second->history();
+  for (int i = 0; i < frames.size(); ++i) {
+    if (!frames.tracked(i)) tracked.erase(frames.frame(i));
   }
   return CloseLoops(tracker_->CameraPath(camera_), tracked, camera_.noise,
                     options_.key_frames, options_.tracker.rigid_distance);
@@ -209,26 +210,26 @@ void SplitFusion::PlaceLostCamera() {
   const auto found = surfaces_.find(0);
   if (found == surfaces_.end() || !found->second->graph().rigid()) return;
   Surface& background = *found->second;
-  const std::vector<FrameMotions>& frames = background.history().frames;
+  const MotionLog& frames = background.history();
   const std::size_t before = trajectory_.size() - frames.size();
   // The known frame next to i in one direction; i if there is none.
-  const auto known_beside = [&](std::size_t i, int step) {
-    for (std::size_t k = i + step; k < frames.size(); k += step) {
-      if (frames[k].tracked) return k;
+  const auto known_beside = [&](int i, int step) {
+    for (int k = i + step; k >= 0 && k < frames.size(); k += step) {
+      if (frames.tracked(k)) return k;
     }
     return i;
   };
-  const auto pose_of = [&](std::size_t i) { return trajectory_[before + i]; };
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].tracked) continue;
-    const std::size_t from = known_beside(i, -1), to = known_beside(i, 1);
+  const auto pose_of = [&](int i) { return trajectory_[before + i]; };
+  for (int i = 0; i < frames.size(); ++i) {
+    if (frames.tracked(i)) continue;
+    const int from = known_beside(i, -1), to = known_beside(i, 1);
     TimedPose& pose = trajectory_[before + i];
     pose.world_from_camera =
         to == i ? pose_of(from).world_from_camera
                 : PoseAmid({pose_of(known_beside(from, -1)), pose_of(from),
                             pose_of(to), pose_of(known_beside(to, 1))},
                            pose.timestamp);
-    background.PlaceIn(frames[i].frame, pose.world_from_camera.inverse());
+    background.PlaceIn(i, pose.world_from_camera.inverse());
   }
 }
 

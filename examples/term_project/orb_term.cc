@@ -228,13 +228,13 @@ class OrbTerm : public splitfusion::EnergyTerm {
                              const Features& now) const {
     std::vector<Match> matches;
     const auto& context = input.context;
-    const auto* then =
-        context.history == nullptr ? nullptr : context.history->Find(1);
+    std::optional<splitfusion::FrameMotions> then;
+    if (context.history != nullptr) then = context.history->Find(1);
     const bool has_mesh = context.surface != nullptr &&
                           context.surface->mesh != nullptr &&
                           !context.surface->mesh->vertices.empty();
-    if (before.points.empty() || now.points.empty() || !has_mesh ||
-        then == nullptr || !then->tracked || then->frame != before.frame) {
+    if (before.points.empty() || now.points.empty() || !has_mesh || !then ||
+        !then->tracked || then->frame != before.frame) {
       return matches;
     }
     const MeshThen mesh(input, then->motions);

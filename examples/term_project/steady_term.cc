@@ -51,8 +51,8 @@ class SteadyTerm : public splitfusion::EnergyTerm {
     // In rigid rounds the one node is no point of the surface.
     if (history == nullptr || input.graph.rigid()) return;
     for (int back : {1, 2}) {
-      const FrameMotions* frame = history->Find(back);
-      if (frame == nullptr || !frame->tracked) return;
+      const auto frame = history->Find(back);
+      if (!frame || !frame->tracked) return;
     }
     const std::vector<NodeMotion> one = history->Before(1);
     const std::vector<NodeMotion> two = history->Before(2);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/deformation/mesh_skinning.h"
@@ -67,48 +68,6 @@ std::vector<int> UncoveredVertices(const TriangleMesh& mesh,
     uncovered.push_back(static_cast<int>(i));
   }
   return uncovered;
-}
-
-/// The nodes that carry some new ones, as a graph of their own.
-struct Carriers {
-  DeformationGraph graph;  // Without edges.
-  std::vector<int> nodes;  // Their indices in the whole graph.
-  std::vector<Skinning>
-      skinning;  // Of the new nodes, by the carriers' indices.
-};
-
-Carriers FindCarriers(const DeformationGraph& graph, const SkinningIndex& index,
-                      const std::vector<Eigen::Vector3f>& added) {
-  Carriers carriers;
-  std::map<int, int> number;
-  for (const Eigen::Vector3f& g : added) {
-    Skinning skinning = index.Skin(g);
-    for (int k = 0; k < skinning.count; ++k) {
-      const int node = skinning.nodes[k];
-      const auto [entry, is_new] =
-          number.emplace(node, static_cast<int>(carriers.nodes.size()));
-      if (is_new) {
-        carriers.nodes.push_back(node);
-        carriers.graph.positions.push_back(graph.positions[node]);
-      }
-      skinning.nodes[k] = entry->second;
-    }
-    carriers.skinning.push_back(skinning);
-  }
-  carriers.graph.motions.resize(carriers.nodes.size());
-  return carriers;
-}
-
-/// Appends the motions of new nodes, blended from those of their carriers.
-void BlendNewMotions(const std::vector<Eigen::Vector3f>& added,
-                     Carriers* carriers, std::vector<NodeMotion>* motions) {
-  for (std::size_t i = 0; i < carriers->nodes.size(); ++i) {
-    carriers->graph.motions[i] = (*motions)[carriers->nodes[i]];
-  }
-  const WarpField warp(carriers->graph);
-  for (std::size_t i = 0; i < added.size(); ++i) {
-    motions->push_back(warp.BlendMotion(carriers->skinning[i], added[i]));
-  }
 }
 
 /// The nodes but those that carried a vertex once and carry none now,
@@ -236,7 +195,7 @@ double NodeSpacing(const GraphOptions& options, double depth) {
 }
 
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
-              DeformationGraph* graph, MotionHistory* history) {
+              DeformationGraph* graph, MotionLog* history) {
   if (graph->size() > 0) {
     const SkinningIndex index(*graph, options.neighbors_per_point);
     const MeshSkinning skinning(index, canonical_mesh.vertices);
@@ -257,8 +216,7 @@ int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
 NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
                        const GraphOptions& options, const SkinningIndex& index,
                        const MeshSkinning& skinning, DeformationGraph* graph,
-                       GraphRecord* record, MotionHistory* history,
-                       bool retie) {
+                       GraphRecord* record, MotionLog* history, bool retie) {
   const NodeChange none = NodeChange::None(graph->size());
   if (skinning.skinning().empty()) return none;
   NodeChange change{
@@ -282,16 +240,9 @@ NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
   for (const int vertex : added.vertices) {
     places.push_back(canonical_mesh.vertices[vertex]);
   }
-  Carriers carriers = FindCarriers(*graph, index, places);
-  BlendNewMotions(places, &carriers, &graph->motions);
-  if (history != nullptr) {
-    for (FrameMotions& frame : history->frames) {
-      BlendNewMotions(places, &carriers, &frame.motions);
-      frame.seen.resize(frame.motions.size(), false);
-      change.Apply(&frame.motions);
-      change.Apply(&frame.seen);
-    }
-  }
+  const NodeBirths births(*graph, index, std::move(places));
+  births.Append(&graph->motions);
+  if (history != nullptr) history->Grow(births, change);
   ReplaceNodes(canonical_mesh, options, skinning.supports(), added, change,
                graph);
   change.Apply(&record->carried);

@@ -5,7 +5,7 @@
 
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
-#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/motion_log.h"
 #include "splitfusion/lib/deformation/node_change.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
@@ -57,7 +57,7 @@ double NodeSpacing(const GraphOptions& options, double depth);
 ///
 /// @return number of nodes added.
 int GrowGraph(const TriangleMesh& canonical_mesh, const GraphOptions& options,
-              DeformationGraph* graph, MotionHistory* history);
+              DeformationGraph* graph, MotionLog* history);
 
 /// What a graph that follows its surface remembers beside its nodes.
 struct GraphRecord {
@@ -87,7 +87,7 @@ struct GraphRecord {
 NodeChange UpdateGraph(const TriangleMesh& canonical_mesh,
                        const GraphOptions& options, const SkinningIndex& index,
                        const MeshSkinning& skinning, DeformationGraph* graph,
-                       GraphRecord* record, MotionHistory* history,
+                       GraphRecord* record, MotionLog* history,
                        bool retie = false);
 
 }  // namespace splitfusion

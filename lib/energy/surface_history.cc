@@ -28,16 +28,18 @@ SurfaceHistory SurfaceHistory::InRigidRounds(
   return history;
 }
 
-const FrameMotions* SurfaceHistory::Find(int back) const {
-  if (back < 1 || back > size()) return nullptr;
-  const FrameMotions& frame = surface_.motions.frames[size() - back];
-  return frame.motions.size() == surface_.graph.positions.size() ? &frame
-                                                                 : nullptr;
+std::optional<FrameMotions> SurfaceHistory::Find(int back) const {
+  if (back < 1 || back > size()) return std::nullopt;
+  FrameMotions frame = surface_.motions.At(size() - back);
+  if (frame.motions.size() != surface_.graph.positions.size()) {
+    return std::nullopt;
+  }
+  return frame;
 }
 
 std::vector<NodeMotion> SurfaceHistory::Before(int back) const {
-  const FrameMotions* frame = Find(back);
-  if (frame == nullptr) return {};
+  const std::optional<FrameMotions> frame = Find(back);
+  if (!frame) return {};
   const std::optional<Rigid3d> live_from_camera = LiveFromCamera(frame->frame);
   if (!live_from_camera) return {};
   DeformationGraph graph = GraphAt(surface_, *frame);
@@ -50,8 +52,8 @@ std::vector<NodeMotion> SurfaceHistory::Before(int back) const {
 
 std::optional<Rigid3d> SurfaceHistory::LiveFromCamera(int frame) const {
   if (!room_) return Rigid3d::Identity();
-  const FrameMotions* then = room_->motions.Find(frame);
-  if (then == nullptr) return std::nullopt;
+  const std::optional<FrameMotions> then = room_->motions.Find(frame);
+  if (!then) return std::nullopt;
   return MeanRigidMotion(room_->graph) *
          MeanRigidMotion(GraphAt(*room_, *then)).inverse();
 }

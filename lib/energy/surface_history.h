@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/motion_log.h"
 
 namespace splitfusion {
 
@@ -20,7 +20,7 @@ class SurfaceHistory {
   /// its frame.
   struct Past {
     const DeformationGraph& graph;  ///< As it is now.
-    const MotionHistory& motions;   ///< As many a frame as the graph has nodes.
+    const MotionLog& motions;       ///< As many a frame as the graph has nodes.
   };
 
   /// `room`: the background, in the live frame already, which tells how the
@@ -33,12 +33,13 @@ class SurfaceHistory {
   SurfaceHistory InRigidRounds(const DeformationGraph& start) const;
 
   /// Number of frames that are known.
-  int size() const { return static_cast<int>(surface_.motions.frames.size()); }
+  int size() const { return surface_.motions.size(); }
 
   /// The frame `back` before the live one that is known, from 1 on: its index,
   /// whether the surface was tracked in it, and the motions of the nodes of the
-  /// surface's graph in the camera of that frame. Null if there is none.
-  const FrameMotions* Find(int back) const;
+  /// surface's graph in the camera of that frame, which is read from a file if
+  /// it is long ago. None if there is none.
+  std::optional<FrameMotions> Find(int back) const;
 
   /// Where it was then as the live camera would see it, as
   /// EnergyInput::before: one motion a node of EnergyInput::graph, metres. Of

@@ -24,7 +24,7 @@ double ShiftFactor(const std::string& key, int repeat) {
 }
 
 /// 0 if it is not there, or no number.
-double NumberAt(const NamedValues& parts, const std::string& key) {
+double NumberOfPart(const NamedValues& parts, const std::string& key) {
   const auto found = parts.find(key);
   return found == parts.end() ? 0 : std::strtod(found->second.c_str(), nullptr);
 }
@@ -35,7 +35,7 @@ Settings ShiftVoxels(const NamedValues& parts, int repeat) {
   Settings settings;
   if (repeat == 0) return settings;
   for (const char* key : kVoxels) {
-    const double size = NumberAt(parts, key);
+    const double size = NumberOfPart(parts, key);
     if (!(size > 0)) {
       throw InputError(std::string("--repeat: expected sf_run --print_identity "
                                    "to tell its ") +
@@ -50,7 +50,7 @@ std::string DifferencesBeyondRepeats(const NamedValues& before,
                                      const NamedValues& now) {
   NamedValues aligned = now;
   for (const char* key : kVoxels) {
-    const double a = NumberAt(before, key), b = NumberAt(now, key);
+    const double a = NumberOfPart(before, key), b = NumberAt(now, key);
     // Two repeats may be shifted in opposite directions.
     const bool shifted = a > 0 && std::abs(b / a - 1) < 2.5 * kMost;
     if (shifted) aligned[key] = before.at(key);

@@ -110,6 +110,7 @@ bool Surface::Reanchor(const LiveView& live) {
   Surface anew(id_, label_, kind_, first_frame_, options_, graph_options_);
   if (!anew.Initialize(live)) return false;
   FinishMesh();
+  history_.Finish();
   anew.retired_ = std::move(retired_);
   anew.retired_.push_back(
       {std::move(mesh_), std::move(graph_), std::move(history_)});
@@ -118,12 +119,15 @@ bool Surface::Reanchor(const LiveView& live) {
 }
 
 SurfaceModel Surface::Model() const {
-  const SurfaceModel last{mesh_, graph_, history_};
-  std::vector<const SurfaceModel*> models;
-  for (const SurfaceModel& model : retired_) models.push_back(&model);
+  std::vector<SurfaceModel> models;
+  for (const RetiredModel& model : retired_) {
+    models.push_back({model.mesh, model.graph, model.history.All()});
+  }
   // One that has no frame yet has nothing to show.
-  if (!history_.frames.empty() || models.empty()) models.push_back(&last);
-  return JoinModels(models);
+  if (!history_.empty() || models.empty()) {
+    models.push_back({mesh_, graph_, history_.All()});
+  }
+  return JoinModels(std::move(models));
 }
 
 void Surface::PlaceGraph(const LiveView& live) {
@@ -195,12 +199,15 @@ int Surface::ForgetRefuted() {
   if (count == 0 || count < graph_options_.refuted_share * graph_.size()) {
     return 0;
   }
-  if (!history_.frames.empty()) {
+  if (!history_.empty()) {
     TriangleMesh shown = mesh_;
     shown.triangles = TrianglesOfLargePieces(mesh_, options_.min_piece_area);
-    SurfaceModel part =
-        PartOf(shown, mesh_skinning_.supports(), graph_, history_, nodes);
-    if (!part.history.frames.empty()) retired_.push_back(std::move(part));
+    SurfacePart part = PartOf(shown, mesh_skinning_.supports(), graph_, nodes);
+    MotionLog motions = history_.Part(part.nodes, part.first_frame);
+    if (!motions.empty()) {
+      retired_.push_back(
+          {std::move(part.mesh), std::move(part.graph), std::move(motions)});
+    }
   }
   ForgetVoxels(graph_, *index_, nodes, &volume_);
   refuted_.Forget(nodes);
@@ -271,15 +278,12 @@ std::vector<char> Surface::SeenNodes(const LiveView& live) const {
 }
 
 void Surface::RecordMotions(int frame, bool tracked, std::vector<char> seen) {
-  history_.frames.push_back({frame, tracked, graph_.motions, std::move(seen)});
+  history_.Append({frame, tracked, graph_.motions, std::move(seen)});
   graph_.first_seen.resize(graph_.size(), frame);
 }
 
-void Surface::PlaceIn(int frame, const Rigid3d& motion) {
-  for (FrameMotions& motions : history_.frames) {
-    if (motions.frame == frame)
-      motions.motions = MakeRigidGraph(motion).motions;
-  }
+void Surface::PlaceIn(int i, const Rigid3d& motion) {
+  history_.Replace(i, MakeRigidGraph(motion).motions);
 }
 
 std::vector<Eigen::Vector3f> Surface::WarpedVertices() const {

@@ -8,7 +8,7 @@
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
 #include "splitfusion/lib/deformation/mesh_skinning.h"
-#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/motion_log.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
@@ -101,11 +101,15 @@ class Surface {
   /// Appends the current motions to the history, and which nodes were seen
   /// (FrameMotions::seen). New nodes count in DeformationGraph::first_seen from
   /// this frame on.
+  ///
+  /// @throw InputError as MotionLog::Append().
   void RecordMotions(int frame, bool tracked, std::vector<char> seen = {});
 
-  /// Sets the motion of a frame of a rigid surface's history, camera from
+  /// Sets the motion of frame `i` of a rigid surface's history, camera from
   /// canonical, metres.
-  void PlaceIn(int frame, const Rigid3d& motion);
+  ///
+  /// @throw InputError as MotionLog::Replace().
+  void PlaceIn(int i, const Rigid3d& motion);
 
   /// Mesh vertices under the current motions, camera frame.
   std::vector<Eigen::Vector3f> WarpedVertices() const;
@@ -153,8 +157,10 @@ class Surface {
     return mesh_skinning_.skinning();
   }
   /// Motions of all frames since its model began.
-  const MotionHistory& history() const { return history_; }
+  const MotionLog& history() const { return history_; }
   /// Mesh, graph and motions of all its models and refuted parts.
+  ///
+  /// @throw InputError as MotionLog::All().
   SurfaceModel Model() const;
 
   /// Saves or restores all that later frames depend on, see
@@ -165,6 +171,18 @@ class Surface {
   void Serialize(Archive* archive);
 
  private:
+  /// A model, or a part of one, that is used no more.
+  struct RetiredModel {
+    TriangleMesh mesh;
+    DeformationGraph graph;
+    MotionLog history;
+
+    template <typename Archive>
+    void Serialize(Archive* archive) {
+      (*archive)(mesh, graph, history);
+    }
+  };
+
   void PlaceGraph(const LiveView& live);
   int FuseWarped(const LiveView& live, DepthObservation* observation);
   int ForgetRefuted();
@@ -188,10 +206,10 @@ class Surface {
   MeshExtractor mesh_extractor_;
   TriangleMesh mesh_;
   MeshSkinning mesh_skinning_;
-  MotionHistory history_;
+  MotionLog history_;
   RefutedParts refuted_;
   // What it was before Reanchor(), and parts that were refuted.
-  std::vector<SurfaceModel> retired_;
+  std::vector<RetiredModel> retired_;
 };
 
 }  // namespace splitfusion

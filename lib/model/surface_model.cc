@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace splitfusion {
 namespace {
@@ -74,10 +75,10 @@ std::vector<NodeMotion> MotionsAt(const SurfaceModel& model, int frame,
 }
 
 /// All frames of some models, and whether the surface was tracked in them.
-std::map<int, bool> FramesOf(const std::vector<const SurfaceModel*>& models) {
+std::map<int, bool> FramesOf(const std::vector<SurfaceModel>& models) {
   std::map<int, bool> frames;
-  for (const SurfaceModel* model : models) {
-    for (const FrameMotions& frame : model->history.frames) {
+  for (const SurfaceModel& model : models) {
+    for (const FrameMotions& frame : model.history.frames) {
       frames[frame.frame] = frame.tracked;
     }
   }
@@ -186,12 +187,12 @@ DeformationGraph GraphOf(const DeformationGraph& graph,
 
 }  // namespace
 
-SurfaceModel PartOf(const TriangleMesh& mesh,
-                    const std::vector<SkinningSupport>& supports,
-                    const DeformationGraph& graph, const MotionHistory& history,
-                    const std::vector<char>& nodes) {
-  const PartMembers members(mesh, supports, graph, nodes);
-  SurfaceModel part;
+SurfacePart PartOf(const TriangleMesh& mesh,
+                   const std::vector<SkinningSupport>& supports,
+                   const DeformationGraph& graph,
+                   const std::vector<char>& of_nodes) {
+  PartMembers members(mesh, supports, graph, of_nodes);
+  SurfacePart part;
   part.mesh.vertices = Chosen(mesh.vertices, members.vertices);
   part.mesh.normals = Chosen(mesh.normals, members.vertices);
   part.mesh.colors = Chosen(mesh.colors, members.vertices);
@@ -201,35 +202,30 @@ SurfaceModel PartOf(const TriangleMesh& mesh,
                                      numbers[t[2]]);
   }
   part.graph = GraphOf(graph, members.nodes);
-  const int first = FirstSight(graph, members.nearest);
-  for (const FrameMotions& frame : history.frames) {
-    if (frame.frame < first) continue;
-    part.history.frames.push_back({frame.frame, frame.tracked,
-                                   Chosen(frame.motions, members.nodes),
-                                   Chosen(frame.seen, members.nodes)});
-  }
+  part.first_frame = FirstSight(graph, members.nearest);
+  part.nodes = std::move(members.nodes);
   return part;
 }
 
-SurfaceModel JoinModels(const std::vector<const SurfaceModel*>& models) {
-  if (models.size() == 1) return *models.front();
+SurfaceModel JoinModels(std::vector<SurfaceModel> models) {
+  if (models.size() == 1) return std::move(models.front());
   SurfaceModel joined;
   std::vector<double> shifts;
   double end = 0;
-  for (const SurfaceModel* model : models) {
-    const Extent extent(*model);
+  for (const SurfaceModel& model : models) {
+    const Extent extent(model);
     shifts.push_back(shifts.empty() ? 0 : end + kGap - extent.low);
     end = extent.high + shifts.back();
-    AppendMesh(model->mesh, shifts.back(), &joined.mesh);
-    AppendGraph(*model, shifts.back(), &joined.graph);
+    AppendMesh(model.mesh, shifts.back(), &joined.mesh);
+    AppendGraph(model, shifts.back(), &joined.graph);
   }
   joined.graph.parts.back().end_frame = ModelPart::kNoEnd;
   for (const auto& [index, tracked] : FramesOf(models)) {
     FrameMotions all{index, tracked, {}, {}};
     for (std::size_t i = 0; i < models.size(); ++i) {
-      const auto motions = MotionsAt(*models[i], index, shifts[i]);
+      const auto motions = MotionsAt(models[i], index, shifts[i]);
       all.motions.insert(all.motions.end(), motions.begin(), motions.end());
-      const FrameMotions* own = models[i]->history.Find(index);
+      const FrameMotions* own = models[i].history.Find(index);
       if (own != nullptr) {
         all.seen.insert(all.seen.end(), own->seen.begin(), own->seen.end());
       }

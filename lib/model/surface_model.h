@@ -16,25 +16,27 @@ struct SurfaceModel {
   TriangleMesh mesh;       ///< Canonical frame, metres.
   DeformationGraph graph;  ///< Its motions are those of the last frame.
   MotionHistory history;   ///< Motions of all its frames.
-
-  /// Saves or restores it, see lib/base/archive.h.
-  template <typename Archive>
-  void Serialize(Archive* archive) {
-    (*archive)(mesh, graph, history);
-  }
 };
 
 /// What is kept of every surface, by id.
 using SurfaceModels = std::map<int, SurfaceModel>;
 
+/// A part of a surface.
+struct SurfacePart {
+  TriangleMesh mesh;        ///< Canonical frame, metres.
+  DeformationGraph graph;   ///< Of its nodes.
+  std::vector<char> nodes;  ///< Of every one of the surface whether it is.
+  int first_frame = 0;      ///< In which any of it was first seen.
+};
+
 /// The part of a surface that some nodes carry: the triangles with a vertex
-/// whose nearest node is one of `nodes` (of every node whether it is), those
-/// beside them, what Eq. 3 needs for them, and their history, from the frame on
-/// in which any of it was first seen. `supports`: of the mesh's vertices.
-SurfaceModel PartOf(const TriangleMesh& mesh,
-                    const std::vector<SkinningSupport>& supports,
-                    const DeformationGraph& graph, const MotionHistory& history,
-                    const std::vector<char>& nodes);
+/// whose nearest node is one of `of_nodes` (of every node whether it is), those
+/// beside them, and what Eq. 3 needs for them. `supports`: of the mesh's
+/// vertices.
+SurfacePart PartOf(const TriangleMesh& mesh,
+                   const std::vector<SkinningSupport>& supports,
+                   const DeformationGraph& graph,
+                   const std::vector<char>& of_nodes);
 
 /// One model out of the parts of a surface; the last one is in use to the end,
 /// the others, which were refuted or replaced (Surface::Reanchor), in the
@@ -42,7 +44,7 @@ SurfaceModel PartOf(const TriangleMesh& mesh,
 /// frames are laid beside one another along x, a metre apart, so that Eq. 3
 /// finds the nodes of one part only. In other frames their nodes keep the
 /// nearest motion that they had.
-SurfaceModel JoinModels(const std::vector<const SurfaceModel*>& models);
+SurfaceModel JoinModels(std::vector<SurfaceModel> models);
 
 }  // namespace splitfusion
 

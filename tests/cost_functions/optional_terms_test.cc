@@ -141,12 +141,19 @@ TEST(VelocityTerm, IsTheWaySinceTheFrameBefore) {
 class AccelerationTermTest : public ::testing::Test {
  protected:
   AccelerationTermTest() {
-    for (int frame = 0; frame < 2; ++frame) {
-      motions_.frames.push_back({frame, true, MovedBy(frame).motions});
-    }
-    input_.before = &motions_.frames.back().motions;
+    Remember(0, {true, true});
+    input_.before = &before_.motions;
     input_.context.frame = &frame_;
     input_.context.history = &history_;
+  }
+
+  /// It was seen from frame `first` on, and tracked or not in each.
+  void Remember(int first, const std::vector<bool>& tracked) {
+    motions_ = MotionLog();
+    for (const bool is_tracked : tracked) {
+      motions_.Append({first, is_tracked, MovedBy(first).motions});
+      ++first;
+    }
   }
 
   /// The plate after so many frames of a constant velocity.
@@ -162,10 +169,11 @@ class AccelerationTermTest : public ::testing::Test {
     return ResidualsOf(AccelerationTerm(), input_, kOptionalTerm);
   }
 
+  const DeformationGraph before_ = MovedBy(1);
   DeformationGraph graph_ = MovedBy(2);
   const std::vector<Correspondence> none_;
   const PinholeCamera camera_;
-  MotionHistory motions_;
+  MotionLog motions_;
   const SurfaceHistory history_{{graph_, motions_}};
   FrameFacts frame_{/*index=*/2};
   EnergyInput input_{graph_, none_, camera_};
@@ -190,10 +198,9 @@ TEST_F(AccelerationTermTest, IsAbsentWithoutASteadyPast) {
   frame_.index = 3;
   expect_none("a frame is missing");
   frame_.index = 2;
-  motions_.frames[0].tracked = false;
+  Remember(0, {false, true});
   expect_none("lost");
-  motions_.frames[0].tracked = true;
-  motions_.frames.erase(motions_.frames.begin());
+  Remember(1, {true});
   expect_none("born in the frame before");
   input_.context.history = nullptr;
   expect_none("looked for elsewhere");

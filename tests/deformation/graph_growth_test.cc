@@ -70,22 +70,21 @@ TEST(GraphGrowth, NewNodesMoveWithTheRestInEveryFrame) {
   DeformationGraph graph = CoverWithNodes(PartOfPlate(0.2), 0.04);
   const Rigid3d earlier = MakeMotion({0.1, 0.2, 0.3}, {0.3, 0, 0});
   const Rigid3d now = MakeMotion({-0.4, 0.1, 0}, {0, 0.5, 0.1});
-  MotionHistory history;
+  MotionLog history;
   DeformationGraph moved = graph;
   ApplyRigidMotion(earlier, &moved);
-  history.frames.push_back(
+  history.Append(
       {4, true, moved.motions, std::vector<char>(moved.size(), true)});
   ApplyRigidMotion(now, &graph);
   ASSERT_GT(GrowGraph(PartOfPlate(0.4), GraphOptions(), &graph, &history), 0);
-  ASSERT_EQ(history.frames[0].motions.size(), graph.motions.size());
+  const FrameMotions then = history.At(0);
+  ASSERT_EQ(then.motions.size(), graph.motions.size());
   for (int i = 0; i < graph.size(); ++i) {
-    EXPECT_EQ(history.frames[0].Saw(i), i < moved.size()) << "not seen then";
+    EXPECT_EQ(then.Saw(i), i < moved.size()) << "not seen then";
     const Eigen::Vector3d& g = graph.positions[i];
     const Eigen::Vector3d p = g + Eigen::Vector3d(0.01, -0.01, 0.02);
     EXPECT_LT((ApplyNode(g, graph.motions[i], p) - now * p).norm(), 1e-5);
-    EXPECT_LT(
-        (ApplyNode(g, history.frames[0].motions[i], p) - earlier * p).norm(),
-        1e-5);
+    EXPECT_LT((ApplyNode(g, then.motions[i], p) - earlier * p).norm(), 1e-5);
   }
 }
 
@@ -161,7 +160,7 @@ struct Update {
     Shake(0.02, /*seed=*/5, &graph);
     graph.first_seen.resize(graph.size());
     std::iota(graph.first_seen.begin(), graph.first_seen.end(), 100);
-    history.frames.push_back({3, true, graph.motions});
+    history.Append({3, true, graph.motions});
     before = graph;
     const SkinningIndex index(graph, 6);
     GraphRecord record{0.04, std::vector<char>(graph.size(), true)};
@@ -171,7 +170,7 @@ struct Update {
   }
 
   DeformationGraph before, graph;
-  MotionHistory history;
+  MotionLog history;
   NodeChange change;
 };
 
@@ -189,12 +188,12 @@ TEST(GraphUpdate, ForgetsNodesThatCarryNothing) {
     EXPECT_EQ(graph.motions[i].translation,
               update.before.motions[old].translation);
     EXPECT_EQ(graph.first_seen[i], 100 + old);
-    EXPECT_EQ(update.history.frames[0].motions[i].translation,
+    EXPECT_EQ(update.history.At(0).motions[i].translation,
               update.before.motions[old].translation);
     for (const int j : graph.neighbors[i]) EXPECT_LT(j, graph.size());
     right_end = std::max(right_end, graph.positions[i].x());
   }
-  EXPECT_EQ(update.history.frames[0].motions.size(), graph.motions.size());
+  EXPECT_EQ(update.history.At(0).motions.size(), graph.motions.size());
   // Nodes beside the end carry the last vertices, too.
   EXPECT_LT(right_end, 0.2 + 3 * 0.04);
 }
@@ -243,8 +242,7 @@ TEST(GraphUpdate, AddsAndForgetsAtOnce) {
   ASSERT_EQ(update.graph.size(),
             static_cast<int>(update.change.kept.size()) + update.change.added);
   EXPECT_EQ(update.graph.first_seen.size(), update.change.kept.size());
-  EXPECT_EQ(update.history.frames[0].motions.size(),
-            update.graph.motions.size());
+  EXPECT_EQ(update.history.At(0).motions.size(), update.graph.motions.size());
   for (const Eigen::Vector3f& v : mesh.vertices) {
     EXPECT_LT(NearestDistance(update.graph, v.cast<double>()), 0.04 + 1e-6);
   }

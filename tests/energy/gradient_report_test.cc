@@ -72,7 +72,7 @@ class GradientReport : public ::testing::Test {
     }
     lost_.assign(correspondences_.begin(), correspondences_.begin() + 9);
     before_.assign(graph_.size(), NodeMotion());
-    motions_.frames = {{0, true, before_}, {1, true, before_}};
+    for (const int frame : {0, 1}) motions_.Append({frame, true, before_});
     const DepthObservation wall =
         ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1));
     AllocateBand(wall, Rigid3d::Identity(), &volume_);
@@ -104,7 +104,7 @@ class GradientReport : public ::testing::Test {
   std::vector<Correspondence> correspondences_, lost_;
   std::vector<TrackedPoint> tracks_;
   std::vector<NodeMotion> before_;
-  MotionHistory motions_;
+  MotionLog motions_;
   TsdfVolume volume_{TsdfOptions{/*voxel_size=*/0.02, /*truncation=*/0.2}};
 };
 

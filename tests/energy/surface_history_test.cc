@@ -13,9 +13,8 @@ class SurfaceHistoryTest : public ::testing::Test {
  protected:
   SurfaceHistoryTest() {
     for (int frame = 0; frame < 3; ++frame) {
-      room_.frames.push_back({frame, true, At(frame, 0)});
-      motions_.frames.push_back(
-          {frame, frame != 1, GraphAt(frame, frame).motions});
+      room_.Append({frame, true, At(frame, 0)});
+      motions_.Append({frame, frame != 1, GraphAt(frame, frame).motions});
     }
     room_graph_.motions = At(3, 0);
   }
@@ -43,17 +42,17 @@ class SurfaceHistoryTest : public ::testing::Test {
     }
   }
 
-  MotionHistory room_;
+  MotionLog room_;
   DeformationGraph room_graph_ = MakeRigidGraph(Rigid3d::Identity());
   DeformationGraph graph_ = GraphAt(3, 3);
-  MotionHistory motions_;
+  MotionLog motions_;
   const SurfaceHistory history_{{graph_, motions_},
                                 SurfaceHistory::Past{room_graph_, room_}};
 };
 
 TEST_F(SurfaceHistoryTest, IsAsTheLiveCameraWouldSeeIt) {
   EXPECT_EQ(history_.size(), 3);
-  ASSERT_NE(history_.Find(2), nullptr);
+  ASSERT_TRUE(history_.Find(2).has_value());
   EXPECT_EQ(history_.Find(2)->frame, 1);
   EXPECT_FALSE(history_.Find(2)->tracked);
   ExpectAt(history_.Before(1), GraphAt(3, 2));
@@ -77,13 +76,16 @@ TEST_F(SurfaceHistoryTest, OfRigidRoundsIsOneMotionFromTheStart) {
 
 TEST_F(SurfaceHistoryTest, WhatIsNotKnownIsEmpty) {
   for (const int back : {-1, 0, 4}) {
-    EXPECT_EQ(history_.Find(back), nullptr) << back;
+    EXPECT_FALSE(history_.Find(back).has_value()) << back;
     EXPECT_TRUE(history_.Before(back).empty()) << back;
   }
-  room_.frames.erase(room_.frames.begin());
+  room_ = MotionLog();
+  for (int frame = 1; frame < 3; ++frame) {
+    room_.Append({frame, true, At(frame, 0)});
+  }
   EXPECT_TRUE(history_.Before(3).empty()) << "where the camera was";
-  EXPECT_NE(history_.Find(3), nullptr);
-  motions_.frames[2].motions.pop_back();
+  EXPECT_TRUE(history_.Find(3).has_value());
+  graph_.positions.pop_back();
   EXPECT_TRUE(history_.Before(1).empty()) << "of another graph";
 }
 

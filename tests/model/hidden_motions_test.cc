@@ -262,9 +262,9 @@ TEST(HiddenMotions, PartsAreFoundInTheirFramesAlone) {
   SurfaceModel second = SeenPlate(poses, Walk);
   second.history.frames.erase(second.history.frames.begin(),
                               second.history.frames.begin() + 20);
-  const SurfaceModel truth = JoinModels({&whole, &second});
+  const SurfaceModel truth = JoinModels({whole, second});
   Hide(24, 26, All, &second);
-  SurfaceModel joined = JoinModels({&first, &second});
+  SurfaceModel joined = JoinModels({first, second});
   ASSERT_GT(FarthestNode(joined, truth), 0.05);
   const std::vector<RefinedWindow> windows =
       RefineHiddenMotions(poses, {}, &joined);
@@ -300,7 +300,7 @@ TEST(HiddenMotions, DoNotDependOnThreads) {
   const auto poses = Poses(FramesUpTo(30));
   SurfaceModel first = SeenPlate(poses, Walk);
   Hide(10, 24, All, &first);
-  const SurfaceModel joined = JoinModels({&first, &first, &first});
+  const SurfaceModel joined = JoinModels({first, first, first});
   std::array<SurfaceModel, 2> models = {joined, joined};
   for (const std::size_t threads : {1, 4}) {
     const tbb::global_control limit(

@@ -102,7 +102,7 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
   }
   EXPECT_GT(box.graph().size(), 1.5 * nodes);
   EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
-  for (const FrameMotions& frame : box.history().frames) {
+  for (const FrameMotions& frame : box.history().All().frames) {
     EXPECT_EQ(frame.motions.size(), box.graph().positions.size());
   }
 }
@@ -125,7 +125,7 @@ TEST(Surface, KnowsWhichNodesAreSeen) {
   ApplyRigidMotion(MakeMotion({0, 0, 0}, {0, 0, 0.2}), box.mutable_graph());
   EXPECT_EQ(seen(ViewWithBox(kWhole)), 0) << "it is hidden behind that";
   box.RecordMotions(4, true, box.SeenNodes(ViewWithBox(kWhole)));
-  EXPECT_FALSE(box.history().frames[0].Saw(0));
+  EXPECT_FALSE(box.history().At(0).Saw(0));
   Surface rigid = MakeBox(SurfaceKind::kRigid);
   ASSERT_TRUE(rigid.Initialize(ViewWithBox(kWhole)));
   EXPECT_EQ(rigid.SeenNodes(other), std::vector<char>{true});
@@ -145,7 +145,7 @@ TEST(Surface, BeginsAnewUnderItsIdAndKeepsWhatItWas) {
   EXPECT_EQ(box.id(), 1);
   EXPECT_EQ(box.first_frame(), 4);
   EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
-  EXPECT_TRUE(box.history().frames.empty());
+  EXPECT_TRUE(box.history().empty());
   box.RecordMotions(5, true);
   box.FinishMesh();
   const SurfaceModel model = box.Model();
@@ -426,7 +426,7 @@ TEST(Surface, ForgetsTheNodesOfWhatIsRefuted) {
     box.RecordMotions(frame, true);
   }
   EXPECT_LT(box.graph().size(), 0.9 * nodes);
-  for (const FrameMotions& frame : box.history().frames) {
+  for (const FrameMotions& frame : box.history().All().frames) {
     EXPECT_EQ(static_cast<int>(frame.motions.size()), box.graph().size());
   }
   const SkinningIndex index(box.graph(), 6);

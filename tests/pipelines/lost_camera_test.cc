@@ -127,7 +127,7 @@ TEST(LostCamera, GoesSmoothlyFromLastSeenToNextSeen) {
   EXPECT_TRUE(
       found[42].world_from_camera.isApprox(found[39].world_from_camera));
   // The history of the background says the same.
-  const MotionHistory& history = cut.fusion().surfaces().at(0)->history();
+  const MotionLog& history = cut.fusion().surfaces().at(0)->history();
   for (const int i : {0, 24, 42}) {
     const NodeMotion& motion = history.Find(i)->motions.at(0);
     const Rigid3d pose = found[i].world_from_camera.inverse();

@@ -105,8 +105,8 @@ TEST(SplitFusion, TracksCameraAndPersonAndMapsBoth) {
   run.fusion().Finish();
   EXPECT_GT(fusion.surfaces().at(0)->mesh().vertices.size(), 20000u);
   for (const auto& [id, surface] : fusion.surfaces()) {
-    EXPECT_EQ(surface->history().frames.front().frame, surface->first_frame());
-    for (const FrameMotions& motions : surface->history().frames) {
+    EXPECT_EQ(surface->history().frame(0), surface->first_frame());
+    for (const FrameMotions& motions : surface->history().All().frames) {
       ASSERT_EQ(motions.motions.size(), surface->graph().positions.size());
     }
   }
@@ -224,7 +224,7 @@ TEST(SplitFusion, AMostlyHiddenPersonIsCarriedOnAndComesBack) {
     EXPECT_EQ(StateOf(report, person), "occluded");
     EXPECT_NE(Find(report, person)->reason.find("in view"), std::string::npos);
     const Surface& surface = *run.fusion().surfaces().at(person);
-    EXPECT_FALSE(surface.history().frames.back().tracked);
+    EXPECT_FALSE(surface.history().tracked(surface.history().size() - 1));
     EXPECT_EQ(surface.mesh().vertices.size(), vertices);
   }
   const FrameReport back = run.Next();

@@ -18,8 +18,8 @@ bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 bool SameSurface(const Surface& a, const Surface& b) {
-  const auto& frames_a = a.history().frames;
-  const auto& frames_b = b.history().frames;
+  const auto frames_a = a.history().All().frames;
+  const auto frames_b = b.history().All().frames;
   if (frames_a.size() != frames_b.size()) return false;
   for (std::size_t i = 0; i < frames_a.size(); ++i) {
     if (!SameBytes(frames_a[i].motions, frames_b[i].motions)) return false;

@@ -1,0 +1,253 @@
+#include "splitfusion/lib/deformation/motion_log.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+namespace splitfusion {
+namespace {
+
+/// Frames that go to the file together.
+constexpr std::size_t kBlockFrames = 16;  // Speed.
+
+std::size_t BytesInMemory(const FrameMotions& frame) {
+  return sizeof(frame) + frame.motions.size() * sizeof(NodeMotion) +
+         frame.seen.size();
+}
+
+/// In the file a motion is R column by column, then t; what was seen follows
+/// all of them.
+using SpooledMotion = std::array<double, 12>;
+
+std::vector<char> BytesOfFrame(const FrameMotions& frame) {
+  std::vector<char> bytes(frame.motions.size() * sizeof(SpooledMotion));
+  char* next = bytes.data();
+  for (const NodeMotion& motion : frame.motions) {
+    SpooledMotion stored;
+    std::copy_n(motion.rotation.data(), 9, stored.begin());
+    std::copy_n(motion.translation.data(), 3, stored.begin() + 9);
+    std::memcpy(next, stored.data(), sizeof(stored));
+    next += sizeof(stored);
+  }
+  if (!frame.seen.empty()) {
+    bytes.insert(bytes.end(), frame.seen.begin(), frame.seen.end());
+    bytes.resize(frame.motions.size() * (sizeof(SpooledMotion) + 1), 0);
+  }
+  return bytes;
+}
+
+NodeMotion MotionFrom(const char* bytes) {
+  SpooledMotion stored;
+  std::memcpy(stored.data(), bytes, sizeof(stored));
+  NodeMotion motion;
+  std::copy_n(stored.begin(), 9, motion.rotation.data());
+  std::copy_n(stored.begin() + 9, 3, motion.translation.data());
+  return motion;
+}
+
+template <typename T>
+std::vector<T> ChosenFrom(const std::vector<T>& values,
+                          const std::vector<char>& members) {
+  std::vector<T> chosen;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (members[i] != 0) chosen.push_back(values[i]);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+int MotionLog::BlockOf(int i) const {
+  return static_cast<int>(
+      std::upper_bound(block_ends_.begin(), block_ends_.end(), i) -
+      block_ends_.begin());
+}
+
+const MotionLog::Block::Frame& MotionLog::HeadOf(int i) const {
+  const int b = BlockOf(i);
+  const std::vector<Block::Frame>& frames = blocks_[b]->frames;
+  return frames[frames.size() - (block_ends_[b] - i)];
+}
+
+int MotionLog::frame(int i) const {
+  return i < spooled_ ? HeadOf(i).index : recent_[i - spooled_].frame;
+}
+
+bool MotionLog::tracked(int i) const {
+  return i < spooled_ ? HeadOf(i).tracked : recent_[i - spooled_].tracked;
+}
+
+FrameMotions MotionLog::At(int i) const {
+  return i < spooled_ ? Load(i) : recent_[i - spooled_];
+}
+
+FrameMotions MotionLog::Load(int i) const {
+  const Block& block = *blocks_[BlockOf(i)];
+  const Block::Frame& head = HeadOf(i);
+  const std::vector<int>& numbers = *block.numbers;
+  const std::size_t seen_from = numbers.size() * sizeof(SpooledMotion);
+  std::vector<char> bytes(seen_from + (head.has_seen ? numbers.size() : 0));
+  file_->Read(head.offset, bytes.data(), bytes.size());
+  std::vector<NodeMotion> motions(block.nodes_ever);
+  std::vector<char> seen(nodes_ever_, false);
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    motions[numbers[k]] = MotionFrom(&bytes[k * sizeof(SpooledMotion)]);
+    if (head.has_seen) seen[numbers[k]] = bytes[seen_from + k];
+  }
+  for (const Births& births : births_) {
+    if (births.first < block.nodes_ever) continue;
+    motions.resize(births.first);
+    births.nodes->Append(&motions);
+  }
+  FrameMotions frame{head.index, head.tracked, {}, {}};
+  for (const int number : *numbers_) frame.motions.push_back(motions[number]);
+  // As of frames in memory: of those that grew it is known of every node.
+  if (head.has_seen || block.changes != changes_) {
+    for (const int number : *numbers_) frame.seen.push_back(seen[number]);
+  }
+  return frame;
+}
+
+std::optional<FrameMotions> MotionLog::Find(int frame) const {
+  int begin = 0;
+  for (int end = size(); begin < end;) {
+    const int middle = begin + (end - begin) / 2;
+    if (this->frame(middle) < frame) {
+      begin = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  if (begin == size() || this->frame(begin) != frame) return std::nullopt;
+  return At(begin);
+}
+
+MotionHistory MotionLog::All() const {
+  MotionHistory history;
+  history.frames.reserve(size());
+  for (int i = 0; i < size(); ++i) history.frames.push_back(At(i));
+  return history;
+}
+
+void MotionLog::Append(FrameMotions frame) {
+  const auto nodes = static_cast<int>(frame.motions.size());
+  if (numbers_ == nullptr) {
+    std::vector<int> numbers(nodes);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    numbers_ = std::make_shared<const std::vector<int>>(std::move(numbers));
+    nodes_ever_ = nodes;
+  }
+  assert(frame.motions.size() == numbers_->size());
+  recent_bytes_ += BytesInMemory(frame);
+  recent_.push_back(std::move(frame));
+  while (recent_bytes_ > memory_ && recent_.size() > kBlockFrames) Spool();
+}
+
+void MotionLog::Grow(const NodeBirths& births, const NodeChange& change) {
+  if (empty()) return;
+  recent_bytes_ = 0;
+  for (FrameMotions& frame : recent_) {
+    births.Append(&frame.motions);
+    frame.seen.resize(frame.motions.size(), false);
+    change.Apply(&frame.motions);
+    change.Apply(&frame.seen);
+    recent_bytes_ += BytesInMemory(frame);
+  }
+  births_.push_back({nodes_ever_, std::make_shared<const NodeBirths>(
+                                      births.Renumbered(*numbers_))});
+  std::vector<int> numbers = *numbers_;
+  for (int i = 0; i < births.size(); ++i) numbers.push_back(nodes_ever_ + i);
+  change.Apply(&numbers);
+  numbers_ = std::make_shared<const std::vector<int>>(std::move(numbers));
+  nodes_ever_ += births.size();
+  ++changes_;
+}
+
+/// What no node that there is now was blended from will not be needed again.
+void MotionLog::ForgetNeedlessBirths() {
+  std::vector<char> needed(nodes_ever_, false);
+  for (const int number : *numbers_) needed[number] = true;
+  std::vector<Births> kept;
+  for (auto births = births_.rbegin(); births != births_.rend(); ++births) {
+    const auto begin = needed.begin() + births->first;
+    const auto end = begin + births->nodes->size();
+    if (std::find(begin, end, true) == end) continue;
+    for (const int carrier : births->nodes->carriers()) needed[carrier] = true;
+    kept.push_back(std::move(*births));
+  }
+  std::reverse(kept.begin(), kept.end());
+  births_ = std::move(kept);
+}
+
+/// Moves the first frames that lie in memory to the file.
+void MotionLog::Spool() {
+  if (file_ == nullptr) file_ = std::make_shared<SpoolFile>();
+  Block block{{}, numbers_, nodes_ever_, changes_};
+  while (!recent_.empty() && block.frames.size() < kBlockFrames) {
+    const FrameMotions& frame = recent_.front();
+    const std::vector<char> bytes = BytesOfFrame(frame);
+    block.frames.push_back({frame.frame, frame.tracked, !frame.seen.empty(),
+                            file_->Append(bytes.data(), bytes.size())});
+    recent_bytes_ -= BytesInMemory(frame);
+    recent_.pop_front();
+  }
+  spooled_ += static_cast<int>(block.frames.size());
+  blocks_.push_back(std::make_shared<const Block>(std::move(block)));
+  block_ends_.push_back(spooled_);
+  ForgetNeedlessBirths();
+}
+
+void MotionLog::Replace(int i, const std::vector<NodeMotion>& motions) {
+  if (i >= spooled_) {
+    recent_[i - spooled_].motions = motions;
+    return;
+  }
+  assert(changes_ == 0 && motions.size() == numbers_->size());
+  const std::vector<char> bytes = BytesOfFrame({0, true, motions, {}});
+  file_->Write(HeadOf(i).offset, bytes.data(), bytes.size());
+}
+
+MotionLog MotionLog::Part(const std::vector<char>& nodes,
+                          int first_frame) const {
+  MotionLog part(memory_);
+  part.file_ = file_;
+  for (const std::shared_ptr<const Block>& block : blocks_) {
+    const auto begin = std::find_if(
+        block->frames.begin(), block->frames.end(),
+        [&](const Block::Frame& f) { return f.index >= first_frame; });
+    if (begin == block->frames.end()) continue;
+    Block rest = *block;
+    rest.frames.erase(rest.frames.begin(),
+                      rest.frames.begin() + (begin - block->frames.begin()));
+    part.spooled_ += static_cast<int>(rest.frames.size());
+    part.blocks_.push_back(begin == block->frames.begin()
+                               ? block
+                               : std::make_shared<const Block>(rest));
+    part.block_ends_.push_back(part.spooled_);
+  }
+  for (const FrameMotions& frame : recent_) {
+    if (frame.frame < first_frame) continue;
+    part.recent_.push_back({frame.frame, frame.tracked,
+                            ChosenFrom(frame.motions, nodes),
+                            ChosenFrom(frame.seen, nodes)});
+    part.recent_bytes_ += BytesInMemory(part.recent_.back());
+  }
+  if (numbers_ == nullptr) return part;
+  part.numbers_ =
+      std::make_shared<const std::vector<int>>(ChosenFrom(*numbers_, nodes));
+  part.nodes_ever_ = nodes_ever_;
+  part.births_ = births_;
+  part.changes_ = changes_;
+  part.ForgetNeedlessBirths();
+  part.Finish();
+  return part;
+}
+
+void MotionLog::Finish() {
+  while (file_ != nullptr && !recent_.empty()) Spool();
+}
+
+}  // namespace splitfusion

@@ -1,0 +1,135 @@
+#ifndef SPLITFUSION_LIB_DEFORMATION_MOTION_LOG_H_
+#define SPLITFUSION_LIB_DEFORMATION_MOTION_LOG_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "splitfusion/lib/base/spool_file.h"
+#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/node_births.h"
+#include "splitfusion/lib/deformation/node_change.h"
+
+namespace splitfusion {
+
+/// Motions of a surface that is being tracked, by ascending frame, while its
+/// graph grows: as MotionHistory, nodes that are born later have motions in the
+/// earlier frames, too, and forgotten ones have none. The last frames lie in
+/// memory, older ones in a temporary file, where they stay as they were: what
+/// was born since is blended when they are read, so that neither memory nor the
+/// cost of a new node grows with the frames.
+class MotionLog {
+ public:
+  /// `memory`: bytes that frames may take before they go to the file.
+  explicit MotionLog(std::size_t memory = kMemory) : memory_(memory) {}
+
+  /// Number of frames.
+  int size() const { return spooled_ + static_cast<int>(recent_.size()); }
+  /// Whether there is none.
+  bool empty() const { return size() == 0; }
+
+  /// Index of frame i, from 0 to size() - 1.
+  int frame(int i) const;
+  /// Whether the surface was tracked in it.
+  bool tracked(int i) const;
+  /// Its motions, of all nodes that there are now.
+  ///
+  /// @throw InputError if the file cannot be read.
+  FrameMotions At(int i) const;
+  /// Motions of the frame with this index; none if the surface has none for it.
+  ///
+  /// @throw InputError as At().
+  std::optional<FrameMotions> Find(int frame) const;
+  /// All frames.
+  ///
+  /// @throw InputError as At().
+  MotionHistory All() const;
+
+  /// Appends a frame behind all others; it has a motion of every node that
+  /// there is.
+  ///
+  /// @throw InputError if the file cannot be written.
+  void Append(FrameMotions frame);
+
+  /// The nodes became others: `births` are new, all that `change` says applies
+  /// to the frames so far.
+  void Grow(const NodeBirths& births, const NodeChange& change);
+
+  /// Sets the motions of frame i of a graph that has not grown.
+  ///
+  /// @throw InputError as Append().
+  void Replace(int i, const std::vector<NodeMotion>& motions);
+
+  /// That of some of the nodes (of every one whether it is), from a frame on.
+  ///
+  /// @throw InputError as Append().
+  MotionLog Part(const std::vector<char>& nodes, int first_frame) const;
+
+  /// Says that it is complete: if there is a file all of it goes there.
+  ///
+  /// @throw InputError as Append().
+  void Finish();
+
+  /// Saves or restores it, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    const std::uint64_t count = archive->Count(size(), 1);
+    if constexpr (Archive::kReads) *this = MotionLog(memory_);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      FrameMotions frame;
+      if constexpr (!Archive::kReads) frame = At(static_cast<int>(i));
+      (*archive)(frame);
+      if constexpr (Archive::kReads) Append(std::move(frame));
+    }
+  }
+
+ private:
+  /// That of a surface.
+  static constexpr std::size_t kMemory = std::size_t{16} << 20;  // Speed.
+
+  /// Frames in the file, of the same nodes.
+  struct Block {
+    struct Frame {
+      int index = 0;
+      bool tracked = true;
+      bool has_seen = false;
+      std::uint64_t offset = 0;
+    };
+    std::vector<Frame> frames;
+    std::shared_ptr<const std::vector<int>> numbers;  // Of the nodes then.
+    int nodes_ever = 0;                               // Until then.
+    int changes = 0;                                  // As `nodes_ever`.
+  };
+  /// Nodes that were born together; their numbers begin with `first`.
+  struct Births {
+    int first = 0;
+    std::shared_ptr<const NodeBirths> nodes;  // By number.
+  };
+
+  int BlockOf(int i) const;
+  const Block::Frame& HeadOf(int i) const;
+  FrameMotions Load(int i) const;
+  void ForgetNeedlessBirths();
+  void Spool();
+
+  std::size_t memory_;
+  std::shared_ptr<SpoolFile> file_;
+  std::vector<std::shared_ptr<const Block>> blocks_;
+  std::vector<int> block_ends_;  // Number of frames up to their ends.
+  int spooled_ = 0;
+  std::deque<FrameMotions> recent_;
+  std::size_t recent_bytes_ = 0;
+  // Every node that there ever was has a number: those that there are now, and
+  // how many there were.
+  std::shared_ptr<const std::vector<int>> numbers_;
+  int nodes_ever_ = 0;
+  std::vector<Births> births_;  // On which those that there are now depend.
+  int changes_ = 0;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_DEFORMATION_MOTION_LOG_H_

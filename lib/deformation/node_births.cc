@@ -1,0 +1,47 @@
+#include "splitfusion/lib/deformation/node_births.h"
+
+#include <map>
+#include <utility>
+
+namespace splitfusion {
+
+NodeBirths::NodeBirths(const DeformationGraph& graph,
+                       const SkinningIndex& index,
+                       std::vector<Eigen::Vector3f> places)
+    : places_(std::move(places)) {
+  std::map<int, int> number;
+  for (const Eigen::Vector3f& g : places_) {
+    Skinning skinning = index.Skin(g);
+    for (int k = 0; k < skinning.count; ++k) {
+      const int node = skinning.nodes[k];
+      const auto [entry, is_new] =
+          number.emplace(node, static_cast<int>(carriers_.size()));
+      if (is_new) {
+        carriers_.push_back(node);
+        carrier_positions_.push_back(graph.positions[node]);
+      }
+      skinning.nodes[k] = entry->second;
+    }
+    skinning_.push_back(skinning);
+  }
+}
+
+NodeBirths NodeBirths::Renumbered(const std::vector<int>& numbers) const {
+  NodeBirths births = *this;
+  for (int& node : births.carriers_) node = numbers[node];
+  return births;
+}
+
+void NodeBirths::Append(std::vector<NodeMotion>* motions) const {
+  DeformationGraph carriers;
+  carriers.positions = carrier_positions_;
+  for (const int node : carriers_) {
+    carriers.motions.push_back((*motions)[node]);
+  }
+  const WarpField warp(carriers);
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    motions->push_back(warp.BlendMotion(skinning_[i], places_[i]));
+  }
+}
+
+}  // namespace splitfusion
