@@ -20,6 +20,11 @@ struct PreparedFrame {
   double segment_seconds = 0;            ///< Spent on `detections`.
 };
 
+/// Carries the colour of a frame, and masks of it if there are any, from the
+/// pixels of an image that is not registered to those of the depth image.
+void RegisterFrame(const PinholeCamera& camera, const ColorCamera& color_camera,
+                   Frame* frame, std::vector<InstanceMask>* masks = nullptr);
+
 /// Prepares one frame; `segmenter` may be null. `color_camera`: of colour
 /// images that are not registered; colour and masks, which are found in it as
 /// it is, are carried over to the pixels of the depth image.
@@ -29,6 +34,13 @@ struct PreparedFrame {
 PreparedFrame PrepareFrame(const PinholeCamera& camera, Frame frame,
                            const PointMapOptions& options, Segmenter* segmenter,
                            const std::optional<ColorCamera>& color_camera = {});
+
+/// Makes the images of a frame be as if all rows had been exposed with the
+/// middle one, see RollingShutter. `motion`: of points that stand still in the
+/// camera frame, from the frame before; `share`: of the time since then that
+/// the rows take. Nothing is labelled yet.
+void UnrollFrame(const Rigid3d& motion, double share,
+                 const PointMapOptions& options, PreparedFrame* prepared);
 
 }  // namespace splitfusion
 

@@ -18,7 +18,8 @@ struct Reconstruction {
 
   /// Looks at all images first, unless bad ones may be skipped. Unless the
   /// options tell where the colour camera is, it is estimated, and used if the
-  /// images are certainly not registered.
+  /// images are certainly not registered; likewise, whether rows were exposed
+  /// one after the other.
   ///
   /// @throw InputError if the sequence or an option cannot be used, or names
   ///     what `registries` do not hold.
@@ -30,6 +31,11 @@ struct Reconstruction {
   ImageFolderReader reader;  ///< At its first frame.
   SplitFusion fusion;        ///< Before its first frame.
   std::string note;          ///< On its colour images; empty if all is well.
+  std::string rows_note;     ///< On the exposure of its rows; as `note`.
+
+ private:
+  void FindColorCamera();
+  void FindRollingShutter();
 };
 
 }  // namespace splitfusion

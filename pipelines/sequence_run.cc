@@ -55,6 +55,9 @@ SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
   WriteCalibration(directory_->paths().Calibration(),
                    work_->reader.calibration());
   WriteColorRegistration();
+  if (!work_->rows_note.empty()) {
+    Warn(work_->rows_note + "; undone (--rolling_shutter, docs/your_data.md)");
+  }
   frames_.emplace([this] { return ReadNext(); }, options_.reads_ahead);
 }
 

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -38,8 +39,24 @@ const SurfaceEnergies& SplitFusion::energies() const {
   return tracker_->energies();
 }
 
+PreparedFrame SplitFusion::PrepareUnsplit(const Frame& frame) const {
+  PreparedFrame prepared =
+      PrepareFrame(camera_, frame, options_.point_map, nullptr, color_camera_);
+  const auto now = std::lower_bound(
+      trajectory_.begin(), trajectory_.end(), frame.timestamp,
+      [](const TimedPose& pose, double time) { return pose.timestamp < time; });
+  if (now == trajectory_.end() || now == trajectory_.begin()) return prepared;
+  const TimedPose& before = *std::prev(now);
+  Unroll(now->world_from_camera.inverse() * before.world_from_camera,
+         frame.timestamp - before.timestamp, &prepared);
+  return prepared;
+}
+
 FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   const Stopwatch stopwatch;
+  const PreparedFrame rolled = prepared;
+  const Rigid3d camera_motion = CameraMotion(prepared.frame.world_from_camera);
+  Unroll(camera_motion, SecondsSince(prepared.frame), &prepared);
   const Frame& frame = prepared.frame;
   FrameReport report;
   report.frame = frame.index;
@@ -49,13 +66,13 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   report.segment_seconds = prepared.segment_seconds;
   live_ = std::move(prepared.live);
   frame_ = {frame.index, frame.timestamp, &prepared.detections, &trajectory_};
-  PredictMotions(frame.world_from_camera);
+  PredictMotions(camera_motion);
   Split(prepared, &report);
   const Stopwatch beginning;
   tracker_->Begin(surfaces_, live_);
   report.associate_seconds += beginning.Seconds();
   if (!surfaces_.empty()) {
-    TrackCamera(frame.world_from_camera.has_value(), &report);
+    TrackCamera(rolled, &report);
     TrackObjects(&report);
     Fuse(&report);
     ReanchorLostSurfaces(&report);
@@ -69,13 +86,50 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   return report;
 }
 
-void SplitFusion::PredictMotions(const std::optional<Rigid3d>& given) {
+/// That of points that stand still, since the frame before: as it is given, or
+/// as the camera moved last.
+Rigid3d SplitFusion::CameraMotion(const std::optional<Rigid3d>& given) const {
+  if (surfaces_.empty()) return Rigid3d::Identity();
+  return given ? (world_from_given_ * *given).inverse() * WorldFromCamera()
+               : predictors_.at(0).velocity();
+}
+
+/// `seconds`: in which the camera moved so.
+void SplitFusion::Unroll(const Rigid3d& camera_motion, double seconds,
+                         PreparedFrame* prepared) const {
+  if (rolling_shutter_ == 0 || !(seconds > 0)) return;
+  // Of longer breaks it is not known how it moved.
+  const double share = std::min(rolling_shutter_ / seconds, 1.0);
+  UnrollFrame(camera_motion, share, options_.point_map, prepared);
+}
+
+/// Seconds since the frame before; 0 if there is none.
+double SplitFusion::SecondsSince(const Frame& frame) const {
+  return trajectory_.empty() ? 0
+                             : frame.timestamp - trajectory_.back().timestamp;
+}
+
+/// The camera seldom moves as it did last: once more with the motion that was
+/// found.
+void SplitFusion::UnrollAsTracked(const PreparedFrame& rolled,
+                                  const std::vector<ModelSample>& samples,
+                                  FrameReport* report) {
+  if (rolling_shutter_ == 0 || background_state_ != TrackState::kTracked) {
+    return;
+  }
+  PreparedFrame again = rolled;
+  Unroll(WorldFromCamera().inverse() * trajectory_.back().world_from_camera,
+         SecondsSince(rolled.frame), &again);
+  again.live.labels = live_.labels;
+  again.live.uncertain = live_.uncertain;
+  live_ = std::move(again.live);
+  TrackBackground(samples, Rigid3d::Identity(), /*goes_on=*/true, report);
+}
+
+void SplitFusion::PredictMotions(const Rigid3d& camera_motion) {
   if (surfaces_.empty()) return;
   camera_was_lost_ = background_state_ != TrackState::kTracked;
   const Rigid3d world_from_camera = WorldFromCamera();
-  const Rigid3d camera_motion =
-      given ? (world_from_given_ * *given).inverse() * world_from_camera
-            : predictors_.at(0).velocity();
   const Rigid3d camera_from_world = camera_motion * world_from_camera.inverse();
   for (const auto& [id, surface] : surfaces_) {
     const Rigid3d motion = id == 0 ? camera_motion
@@ -142,8 +196,9 @@ std::vector<ModelSample> SplitFusion::BackgroundInView(
   return samples;
 }
 
-void SplitFusion::TrackCamera(bool given, FrameReport* report) {
-  if (given) {
+void SplitFusion::TrackCamera(const PreparedFrame& rolled,
+                              FrameReport* report) {
+  if (rolled.frame.world_from_camera) {
     background_state_ = TrackState::kTracked;
     report->surfaces.emplace_back().id = 0;
     return;
@@ -155,6 +210,7 @@ void SplitFusion::TrackCamera(bool given, FrameReport* report) {
   if (!IsCameraFound(*report) && surfaces_.at(0)->graph().rigid()) {
     FindCamera(predicted, &samples, report);
   }
+  UnrollAsTracked(rolled, samples, report);
   if (SetMoversApart(samples, report)) {
     TrackBackground(samples, Rigid3d::Identity(), /*goes_on=*/true, report);
   }

@@ -57,10 +57,7 @@ class SplitFusion {
                         color_camera_);
   }
   /// The same without detections, for a pass over frames that are done.
-  PreparedFrame PrepareUnsplit(const Frame& frame) const {
-    return PrepareFrame(camera_, frame, options_.point_map, nullptr,
-                        color_camera_);
-  }
+  PreparedFrame PrepareUnsplit(const Frame& frame) const;
   /// The rest of it.
   FrameReport ProcessFrame(PreparedFrame prepared);
 
@@ -99,6 +96,11 @@ class SplitFusion {
   const std::optional<ColorCamera>& color_camera() const {
     return color_camera_;
   }
+  /// Rows of all images were exposed one after the other, the last one so many
+  /// seconds after the first; 0: all at once. Before the first frame.
+  void set_rolling_shutter(double seconds) { rolling_shutter_ = seconds; }
+  /// That time, seconds.
+  double rolling_shutter() const { return rolling_shutter_; }
   /// Options in use.
   const PipelineOptions& options() const { return options_; }
   /// What is minimised.
@@ -121,7 +123,14 @@ class SplitFusion {
 
  private:
   /// `given`: known pose of the camera, see Frame.
-  void PredictMotions(const std::optional<Rigid3d>& given);
+  Rigid3d CameraMotion(const std::optional<Rigid3d>& given) const;
+  void Unroll(const Rigid3d& camera_motion, double seconds,
+              PreparedFrame* prepared) const;
+  double SecondsSince(const Frame& frame) const;
+  void UnrollAsTracked(const PreparedFrame& rolled,
+                       const std::vector<ModelSample>& samples,
+                       FrameReport* report);
+  void PredictMotions(const Rigid3d& camera_motion);
   void Split(const PreparedFrame& prepared, FrameReport* report);
   /// What surfaces are tracked in.
   FrameScene Scene() const;
@@ -163,7 +172,7 @@ class SplitFusion {
   bool SetMoversApart(const std::vector<ModelSample>& samples,
                       FrameReport* report);
   /// The pose of the camera, `given` or tracked, apart from such objects.
-  void TrackCamera(bool given, FrameReport* report);
+  void TrackCamera(const PreparedFrame& rolled, FrameReport* report);
   /// Every object on its own and at the same time.
   void TrackObjects(FrameReport* report);
   /// Ends the tracks of surfaces that nothing hides and that are not there all
@@ -203,6 +212,7 @@ class SplitFusion {
 
   PinholeCamera camera_;
   std::optional<ColorCamera> color_camera_;
+  double rolling_shutter_ = 0;
   PipelineOptions options_;
   std::shared_ptr<Segmenter> segmenter_;
   SurfaceSplitter splitter_;

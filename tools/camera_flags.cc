@@ -2,6 +2,7 @@
 
 #include <gflags/gflags.h>
 
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -12,6 +13,8 @@ DEFINE_string(intrinsics, "", "fx,fy,cx,cy,width,height; else from a file.");
 DEFINE_double(depth_scale, 0, "Depth units in a metre; 0 = from a file.");
 DEFINE_string(color_camera, "auto",
               "Camera of unregistered colour: FILE, auto, none.");
+DEFINE_string(rolling_shutter, "auto",
+              "Seconds from the first row to the last; or auto.");
 DEFINE_bool(skip_bad_frames, false,
             "Leave out frames whose images are missing or broken.");
 
@@ -37,12 +40,25 @@ PinholeCamera ParseIntrinsics(const std::string& text) {
   return camera;
 }
 
+/// Seconds; none for "auto".
+std::optional<double> ParseRollingShutter(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  std::stringstream stream(text);
+  double seconds = 0;
+  if (!(stream >> seconds) || !(stream >> std::ws).eof()) {
+    throw InputError("--rolling_shutter=" + text +
+                     ": expected auto, or seconds from 0 to 1");
+  }
+  return seconds;
+}
+
 }  // namespace
 
 ReaderOptions ImagesFromFlags() {
   ReaderOptions options = FramesFromFlags();
   options.depth_scale = FLAGS_depth_scale;
   options.color_camera = FLAGS_color_camera;
+  options.rolling_shutter = ParseRollingShutter(FLAGS_rolling_shutter);
   options.skip_bad_frames = FLAGS_skip_bad_frames;
   if (!FLAGS_intrinsics.empty()) {
     options.camera = ParseIntrinsics(FLAGS_intrinsics);

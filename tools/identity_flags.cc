@@ -136,6 +136,8 @@ NamedValues InputParts(const ImageFolderReader& reader) {
   parts["input.camera"] = camera;
   parts["input.color_camera"] =
       used.color ? ToText(*used.color) : reader.options().color_camera;
+  const std::optional<double>& rows = reader.options().rolling_shutter;
+  parts["input.rolling_shutter"] = rows ? NumberText(*rows) : "auto";
   if (!used.lens.IsNone()) parts["input.lens"] = used.lens.Text();
   if (used.color && !used.color_lens.IsNone()) {
     parts["input.color_lens"] = used.color_lens.Text();

@@ -196,6 +196,9 @@ Calibration ReadCalibrationKeys(const std::string& path) {
   result.camera.cy = Require(path, values, "cy");
   result.depth_scale = Require(path, values, "depth_scale");
   result.lens = LensOfKeys(values, "");
+  result.lens_is_stated =
+      std::any_of(kDistortionKeys.begin(), kDistortionKeys.end(),
+                  [&](const char* key) { return values.count(key) > 0; });
   result.color = ColorCameraOfKeys(path, values);
   result.color_lens = LensOfKeys(values, kColorPrefix);
   CheckCalibration(path, result);
@@ -210,6 +213,7 @@ void WriteCalibrationKeys(const std::string& path,
         << camera.height << "\nfx " << camera.fx << "\nfy " << camera.fy
         << "\ncx " << camera.cx << "\ncy " << camera.cy << "\ndepth_scale "
         << calibration.depth_scale << '\n';
+    if (calibration.lens.IsNone()) out << "k1 0\n";  // It is stated.
     WriteLensKeys("", calibration.lens, out);
     if (!calibration.color) return;
     WriteColorKeys(*calibration.color, out);

@@ -18,6 +18,8 @@ struct Calibration {
   std::optional<ColorCamera> color = {};
   /// Distortion of the files of depth, and of registered colour.
   LensDistortion lens = {};
+  /// Whether a file says which that is, if only that there is none.
+  bool lens_is_stated = false;
   /// Distortion of the files of `color`.
   LensDistortion color_lens = {};
 

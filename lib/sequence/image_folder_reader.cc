@@ -104,6 +104,10 @@ void ReaderOptions::Check() const {
               "a number > 0, or 0 for all");
   CheckOption(std::isfinite(depth_scale) && depth_scale >= 0, "depth_scale",
               depth_scale, "units per metre > 0, or 0 for the file's");
+  if (rolling_shutter) {
+    CheckOption(*rolling_shutter >= 0 && *rolling_shutter <= 1,
+                "rolling_shutter", *rolling_shutter, "seconds from 0 to 1");
+  }
   if (camera) camera->Check();
   depth.Check();
 }

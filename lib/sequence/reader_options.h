@@ -26,6 +26,9 @@ struct ReaderOptions {
   /// a file of ReadColorCamera(); "auto": `color_camera.txt` of the sequence if
   /// there is one, or else what the format finds; "none": they are registered.
   std::string color_camera = "auto";
+  /// Seconds from the first row of an image that is exposed to the last one, 0:
+  /// all at once; none: estimated, and 0 unless it is certain.
+  std::optional<double> rolling_shutter;
   /// TUM text file of known poses, one of every frame; empty: none.
   std::string trajectory;
 

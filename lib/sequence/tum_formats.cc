@@ -1,6 +1,7 @@
 #include "splitfusion/lib/sequence/tum_formats.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "splitfusion/lib/sequence/calibration_files.h"
@@ -22,25 +23,50 @@ std::string NameOf(const std::string& folder) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-/// What the benchmark's page gives for the colour cameras of its folders, to
-/// which depth is registered; none for another folder.
+/// A colour camera of the benchmark, to which depth is registered.
+struct BenchmarkCamera {
+  const char* name;  // Part of the names of its folders.
+  PinholeCamera camera;
+  LensDistortion lens;
+};
+
+/// What the benchmark's page gives.
+const std::array<BenchmarkCamera, 3>& BenchmarkCameras() {
+  static const std::array<BenchmarkCamera, 3> cameras = {{
+      {"freiburg1",
+       {640, 480, 517.3, 516.5, 318.6, 255.3},
+       {{0.2624, -0.9531, -0.0054, 0.0026, 1.1633}}},
+      {"freiburg2",
+       {640, 480, 520.9, 521.0, 325.1, 249.7},
+       {{0.2312, -0.7849, -0.0033, -0.0001, 0.9172}}},
+      {"freiburg3", {640, 480, 535.4, 539.2, 320.1, 247.6}, {}},
+  }};
+  return cameras;
+}
+
+/// That of a folder; none for another folder.
 std::optional<Calibration> BenchmarkCalibration(const std::string& folder) {
-  const auto is_of = [&](const char* camera) {
-    return folder.find(camera) != std::string::npos;
-  };
-  Calibration found{{}, kTumDepthScale};
-  if (is_of("freiburg1")) {
-    found.camera = {640, 480, 517.3, 516.5, 318.6, 255.3};
-    found.lens.coefficients = {0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
-  } else if (is_of("freiburg2")) {
-    found.camera = {640, 480, 520.9, 521.0, 325.1, 249.7};
-    found.lens.coefficients = {0.2312, -0.7849, -0.0033, -0.0001, 0.9172};
-  } else if (is_of("freiburg3")) {
-    found.camera = {640, 480, 535.4, 539.2, 320.1, 247.6};
-  } else {
-    return std::nullopt;
+  for (const BenchmarkCamera& known : BenchmarkCameras()) {
+    if (folder.find(known.name) == std::string::npos) continue;
+    Calibration found{known.camera, kTumDepthScale};
+    found.lens = known.lens;
+    return found;
   }
-  return found;
+  return std::nullopt;
+}
+
+/// The lens of the benchmark's camera that has the same intrinsics: files name
+/// these alone, and the images of the benchmark are not undistorted.
+LensDistortion BenchmarkLens(const PinholeCamera& camera) {
+  for (const BenchmarkCamera& known : BenchmarkCameras()) {
+    const PinholeCamera& c = known.camera;
+    if (camera.width == c.width && camera.height == c.height &&
+        camera.fx == c.fx && camera.fy == c.fy && camera.cx == c.cx &&
+        camera.cy == c.cy) {
+      return known.lens;
+    }
+  }
+  return {};
 }
 
 class TumFormat : public SequenceFormat {
@@ -63,8 +89,10 @@ class TumFormat : public SequenceFormat {
 
   std::optional<Calibration> FindCalibration(
       const std::string& sequence) const override {
-    const auto found = SequenceFormat::FindCalibration(sequence);
-    return found ? found : BenchmarkCalibration(NameOf(sequence));
+    auto found = SequenceFormat::FindCalibration(sequence);
+    if (!found) return BenchmarkCalibration(NameOf(sequence));
+    if (!found->lens_is_stated) found->lens = BenchmarkLens(found->camera);
+    return found;
   }
 };
 
