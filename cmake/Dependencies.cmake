@@ -110,7 +110,7 @@ function(splitfusion_choose_rosbag_files list)
   endif()
   list(FILTER ${list} EXCLUDE REGEX "${other}")
   set(${list} "${${list}}" PARENT_SCOPE)
-  list(FILTER ${list} INCLUDE REGEX "/(ros_bag|ros_bag_check).cc$")
+  list(FILTER ${list} INCLUDE REGEX "/(ros_bag|ros_bag_check|ros_bag_missing).cc$")
   set_source_files_properties(${${list}} PROPERTIES
                               SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
