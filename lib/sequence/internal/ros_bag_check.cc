@@ -20,7 +20,8 @@ namespace splitfusion {
 namespace {
 
 constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
-constexpr std::uint64_t kMaxBagChunk = 1 << 28;  // Bytes.
+// Bytes, decompressed; those that rosbag writes have 768 KiB, or one message.
+constexpr std::uint64_t kMaxBagChunk = 1 << 28;
 
 /// A record: fields "name=value", then data.
 struct BagRecord {
