@@ -27,7 +27,7 @@ labels_of() {  # Classes of masks: FRAME_OBJECT.png.
 
 results=()
 for folder in "${folders[@]}"; do
-  need "$folder" color depth
+  need "$folder" depth
   folder="$(realpath "$folder")"
   name="$(basename "$folder")"
   masks=(--masks=none)
