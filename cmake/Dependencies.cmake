@@ -88,20 +88,13 @@ function(splitfusion_link_dependencies target)
   target_include_directories(${target} SYSTEM PRIVATE ${PCL_INCLUDE_DIRS}
                              ${CHOLMOD_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR}
                              ${HDF5_INCLUDE_DIR} ${MINIZIP_INCLUDE_DIR})
-  splitfusion_link_rosbag(${target})
-endfunction()
-
-# For whatever includes headers of ROS; nothing in a build without.
-function(splitfusion_link_rosbag target)
   if(SPLITFUSION_ROSBAG)
     target_link_libraries(${target} PRIVATE ${ROSBAG_LIBRARIES})
-    target_include_directories(${target} SYSTEM PRIVATE ${ROSBAG_INCLUDE_DIRS})
   endif()
 endfunction()
 
 # Leaves those source files in a list that are for a build with, or without,
-# librosbag-storage. Headers of ROS define macros and drag others in: who
-# includes them is compiled alone. For sources of the calling folder.
+# librosbag-storage. For sources of the calling folder.
 function(splitfusion_choose_rosbag_files list)
   if(SPLITFUSION_ROSBAG)
     set(other "/ros_bag_missing.cc$")
@@ -111,6 +104,20 @@ function(splitfusion_choose_rosbag_files list)
   list(FILTER ${list} EXCLUDE REGEX "${other}")
   set(${list} "${${list}}" PARENT_SCOPE)
   list(FILTER ${list} INCLUDE REGEX "/(ros_bag|ros_bag_check|ros_bag_missing).cc$")
-  set_source_files_properties(${${list}} PROPERTIES
-                              SKIP_UNITY_BUILD_INCLUSION ON)
+  splitfusion_let_include_ros(${${list}})
+endfunction()
+
+# Only these files see the headers of ROS. Those define macros and drag others
+# in: who includes them is compiled alone.
+function(splitfusion_let_include_ros)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  if(SPLITFUSION_ROSBAG)
+    # GCC's own headers look for the next ones after the usual folders.
+    list(REMOVE_ITEM ROSBAG_INCLUDE_DIRS
+         ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})
+    list(TRANSFORM ROSBAG_INCLUDE_DIRS PREPEND -isystem)
+    set_source_files_properties(${ARGN} PROPERTIES
+      COMPILE_OPTIONS "${ROSBAG_INCLUDE_DIRS}"
+      COMPILE_DEFINITIONS SPLITFUSION_WITH_ROSBAG)
+  endif()
 endfunction()
