@@ -28,17 +28,17 @@ find_path(HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
 find_library(HDF5_LIBRARY hdf5_serial REQUIRED)
 
 # Bags of ROS 1, optional. The package configs of librosbag-storage-dev run
-# Python that their packages do not depend on; its pkg-config files name one that
-# is not there. SPLITFUSION_ROSBAG says whether all was found.
+# Python with packages that another Python than Debian's lacks; its pkg-config
+# file names one that is not there. SPLITFUSION_ROSBAG: whether all was found.
 option(SPLITFUSION_WITH_ROSBAG
        "Read bags of ROS 1, if librosbag-storage is there" ON)
 set(SPLITFUSION_ROSBAG OFF)
 if(SPLITFUSION_WITH_ROSBAG)
   set(SPLITFUSION_ROSBAG ON)
   set(ROSBAG_INCLUDE_DIRS "")
-  foreach(header rosbag/bag sensor_msgs/Image ament_index_cpp/get_package_prefix
-          class_loader/class_loader pluginlib/class_loader rcpputils/visibility_control
-          rcutils/macros)
+  foreach(header rosbag/bag sensor_msgs/Image
+          ament_index_cpp/get_package_prefix class_loader/class_loader
+          pluginlib/class_loader rcpputils/visibility_control rcutils/macros)
     get_filename_component(name ${header} DIRECTORY)
     find_path(ROSBAG_${name}_INCLUDE_DIR NAMES ${header}.h ${header}.hpp
               PATH_SUFFIXES ${name})
@@ -103,7 +103,8 @@ function(splitfusion_choose_rosbag_files list)
   endif()
   list(FILTER ${list} EXCLUDE REGEX "${other}")
   set(${list} "${${list}}" PARENT_SCOPE)
-  list(FILTER ${list} INCLUDE REGEX "/(ros_bag|ros_bag_check|ros_bag_missing).cc$")
+  list(FILTER ${list} INCLUDE
+       REGEX "/(ros_bag|ros_bag_check|ros_bag_missing).cc$")
   splitfusion_let_include_ros(${${list}})
 endfunction()
 

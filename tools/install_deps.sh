@@ -66,8 +66,8 @@ for package in "${optional[@]}"; do
   if [[ "$may_install" == yes ]] && apt-cache show "$package" &>/dev/null; then
     missing+=("$package")
   else
-    echo "install_deps: without $package (optional): it is not in the lists of" \
-         "apt, or you are not root" >&2
+    echo "install_deps: without $package (optional): it is not in apt's" \
+         "lists, or you are not root" >&2
   fi
 done
 if ((${#missing[@]})); then

@@ -6,8 +6,8 @@
 # FOLDER, or FOLDER/data, holds frame-NNNNNN.color.png, frame-NNNNNN.depth.png
 # (millimetres) and depthIntrinsics.txt (docs/data_sets.md). The object is all
 # that there is: --masks=none --preset=dynamicfusion, unless other flags say so.
-# Nothing is written into FOLDER. Finished runs are kept. SPLITFUSION_BIN: folder
-# of the programs, if not build/release/bin.
+# Nothing is written into FOLDER. Finished runs are kept. SPLITFUSION_BIN:
+# folder of the programs, if not build/release/bin.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 parse_arguments "$@"
