@@ -26,7 +26,7 @@ total="$(count '^ *[0-9]+/[0-9]+ Test ')"
 echo "tests: $passed passed, $((total - passed - skipped)) failed," \
      "$skipped skipped in $SECONDS s (log: $log)"
 if ((skipped)); then
-  grep -ohE '(shared data|slurm|Chromium or playwright-core|python3-[a-z, -]+) not found.*|this processor, or .*' \
+  grep -ohE '(shared data|slurm|librosbag-storage|Chromium or playwright-core|python3-[a-z, -]+) not found.*|this processor, or .*' \
     build/release/Testing/Temporary/LastTest.log | sort -u |
     sed 's/^/tests: skipped: /' || true
 fi

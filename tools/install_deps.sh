@@ -14,6 +14,8 @@ packages=(
   libmeshoptimizer-dev
   libgtest-dev libgmock-dev libbenchmark-dev doxygen python3-onnx
 )
+# Bags of ROS 1 are read with these. Not every distribution has them.
+optional=(librosbag-storage-dev libsensor-msgs-dev)
 if [[ "${1:-}" == --tests ]]; then
   packages+=(chromium python3-numpy python3-h5py python3-matplotlib)
 fi
@@ -26,35 +28,52 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   exit 2
 fi
 
+is_installed() {
+  [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null || true)" == \
+     installed ]]
+}
+
+# What apt-get prints is shown only if it fails.
+log="$(mktemp)"
+trap 'rm -f "$log"' EXIT
+apt_get() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@" -qq \
+    -o DPkg::Lock::Timeout=300 >"$log" 2>&1 </dev/null && return
+  cat "$log" >&2
+  echo "install_deps: apt-get failed" >&2
+  exit 1
+}
+
 missing=()
 for package in "${packages[@]}"; do
-  state="$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null ||
-           true)"
-  [[ "$state" == installed ]] || missing+=("$package")
+  is_installed "$package" || missing+=("$package")
 done
-
+may_install=yes
+as_root=()
+if ((EUID != 0)); then
+  as_root=(sudo)
+  command -v sudo >/dev/null || may_install=no
+fi
 if ((${#missing[@]})); then
-  as_root=()
-  if ((EUID != 0)); then
-    if ! command -v sudo >/dev/null; then
-      echo "install_deps: missing ${missing[*]}; run as root or with sudo" >&2
-      exit 2
-    fi
-    as_root=(sudo)
+  if [[ "$may_install" == no ]]; then
+    echo "install_deps: missing ${missing[*]}; run as root or with sudo" >&2
+    exit 2
   fi
+  apt_get update
+fi
+for package in "${optional[@]}"; do
+  is_installed "$package" && continue
+  if [[ "$may_install" == yes ]] && apt-cache show "$package" &>/dev/null; then
+    missing+=("$package")
+  else
+    echo "install_deps: without $package (optional): it is not in apt's" \
+         "lists, or you are not root" >&2
+  fi
+done
+if ((${#missing[@]})); then
   echo "install_deps: installing ${missing[*]} and what they need" \
        "(a few minutes)"
-  log="$(mktemp)"
-  trap 'rm -f "$log"' EXIT
-  if ! { "${as_root[@]}" apt-get update -qq &&
-         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install \
-           -qq -y --no-install-recommends -o DPkg::Lock::Timeout=300 \
-           "${missing[@]}"; } \
-       >"$log" 2>&1 </dev/null; then
-    cat "$log" >&2
-    echo "install_deps: apt-get failed" >&2
-    exit 1
-  fi
+  apt_get install -y --no-install-recommends "${missing[@]}"
   echo "install_deps: done"
 fi
 

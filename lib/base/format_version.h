@@ -29,9 +29,9 @@ template <typename Json>
 void CheckFormatVersion(const std::string& place, const Json& json) {
   const auto found = json.find("format_version");
   if (found == json.end()) return;
-  if (found->is_number_unsigned() &&
-      found->template get<std::uint64_t>() <= kFormatVersion) {
-    return;
+  if (found->is_number_integer()) {
+    const auto version = found->template get<std::int64_t>();
+    if (0 <= version && version <= kFormatVersion) return;
   }
   throw InputError(place + ": field 'format_version': " + BriefJson(*found) +
                    ": expected at most " + std::to_string(kFormatVersion) +

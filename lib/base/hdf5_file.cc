@@ -259,6 +259,10 @@ bool Hdf5Reader::Has(const std::string& path, bool /*here*/) const {
   return H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0;
 }
 
+bool Hdf5Reader::HasAttribute(const std::string& name) const {
+  return H5Aexists(file_, name.c_str()) > 0;
+}
+
 std::uint64_t Hdf5Reader::CheckedRows(
     const std::string& path, Hdf5Number number,
     const std::vector<std::uint64_t>& item_shape) {

@@ -152,6 +152,9 @@ class Hdf5Reader {
   /// Whether the file has a group or dataset of this path.
   bool Has(const std::string& path, bool here) const;
 
+  /// Whether the root has an attribute of this name.
+  bool HasAttribute(const std::string& name) const;
+
   /// Reads a dataset into `of(item)` of every item. The first column of a group
   /// makes the items; the others of the group must have as many.
   ///

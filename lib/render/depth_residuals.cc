@@ -12,6 +12,8 @@
 namespace splitfusion {
 namespace {
 
+constexpr char kResidualsVersion[] = "format_version";
+
 /// The columns of the file, written or read.
 template <typename File>
 void Visit(File* file, DepthResiduals* rows) {
@@ -61,7 +63,7 @@ void WriteResiduals(const std::string& path, const DepthResiduals& residuals) {
     DepthResiduals copy = residuals;  // Both directions take what may change.
     Hdf5Writer file(temporary);
     std::int32_t version = kFormatVersion;
-    file.Attribute("format_version", &version);
+    file.Attribute(kResidualsVersion, &version);
     Visit(&file, &copy);
     file.Close();
   });
@@ -71,6 +73,11 @@ DepthResiduals ReadResiduals(const std::string& path) {
   DepthResiduals residuals;
   if (!std::filesystem::exists(path)) return residuals;
   Hdf5Reader file(path);
+  if (file.HasAttribute(kResidualsVersion)) {
+    std::int32_t version = 0;
+    file.Attribute(kResidualsVersion, &version);
+    CheckFormatVersion(path, nlohmann::json{{kResidualsVersion, version}});
+  }
   Visit(&file, &residuals);
   return residuals;
 }

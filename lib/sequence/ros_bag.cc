@@ -1,150 +1,277 @@
 #include "splitfusion/lib/sequence/ros_bag.h"
 
+#include <console_bridge/console.h>
+#include <ros/exception.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/CompressedImage.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/image_encodings.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <map>
+#include <mutex>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/sequence/calibration_files.h"
+#include "splitfusion/lib/sequence/image_file.h"
+#include "splitfusion/lib/sequence/internal/ros_bag_check.h"
 
 namespace splitfusion {
 namespace {
 
-constexpr char kMagic[] = "#ROSBAG V2.0\n";
-constexpr std::uint32_t kMaxHeader = 1 << 20;  // Bytes.
+namespace encodings = sensor_msgs::image_encodings;
 
-/// Values of the field `op`.
-enum RecordKind { kMessage = 2, kChunk = 5, kConnection = 7 };
+constexpr std::uint32_t kMaxRosSide = 20000;  // Pixels.
 
-using Fields = std::map<std::string, std::string>;
-
-/// Fields "name=value", each after its length.
-Fields FieldsOf(const std::string& bytes) {
-  Fields fields;
-  std::size_t at = 0;
-  while (at + 4 <= bytes.size()) {
-    std::uint32_t size = 0;
-    std::memcpy(&size, &bytes[at], sizeof(size));
-    at += sizeof(size);
-    if (size > bytes.size() - at) break;
-    const std::string field = bytes.substr(at, size);
-    at += size;
-    const std::size_t equals = field.find('=');
-    if (equals == std::string::npos) continue;
-    fields[field.substr(0, equals)] = field.substr(equals + 1);
-  }
-  return fields;
-}
-
-/// A number of a field; 0 if there is none of that size.
-template <typename Number>
-Number NumberIn(const Fields& fields, const std::string& name) {
-  const auto found = fields.find(name);
-  Number number = 0;
-  if (found != fields.end() && found->second.size() == sizeof(number)) {
-    std::memcpy(&number, found->second.data(), sizeof(number));
-  }
-  return number;
-}
-
-std::string TextIn(const Fields& fields, const std::string& name) {
-  const auto found = fields.find(name);
-  return found == fields.end() ? "" : found->second;
-}
-
-}  // namespace
-
-/// Records, one after the other: header, then data, each after its length.
-class RosBag::Records {
+/// As IStream, which takes the memory of an array before it looks whether the
+/// message is that long.
+class CheckedStream : public ros::serialization::IStream {
  public:
-  explicit Records(const std::string& path) : path_(path) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) {
-      throw InputError(path + ": no such file: expected a .bag of ROS 1");
+  explicit CheckedStream(std::vector<std::uint8_t>* bytes)
+      : IStream(bytes->data(), static_cast<std::uint32_t>(bytes->size())) {}
+
+  template <typename Value>
+  void next(Value& value) {
+    ros::serialization::deserialize(*this, value);
+  }
+
+  template <typename Value, typename Allocator>
+  void next(std::vector<Value, Allocator>& values) {
+    std::uint32_t count = 0;
+    std::memcpy(&count, IStream(*this).advance(sizeof(count)), sizeof(count));
+    if (count > (getLength() - sizeof(count)) / sizeof(Value)) {
+      ros::serialization::throwStreamOverrun();
     }
-    size_ = std::filesystem::file_size(path, error);
-    stream_.open(path, std::ios::binary);
-    if (error || !stream_) throw InputError(path + ": cannot be opened");
+    ros::serialization::deserialize(*this, values);
+  }
+};
+
+template <typename Message>
+bool IsA(const std::string& type) {
+  return type == ros::message_traits::DataType<Message>::value();
+}
+
+/// How an encoding becomes an image.
+struct RosEncoding {
+  int type;        // Of its pixels.
+  int conversion;  // Of cv::cvtColor(); < 0: none.
+};
+
+const std::map<std::string, RosEncoding>& RosEncodings() {
+  static const std::map<std::string, RosEncoding> known = {
+      {encodings::RGB8, {CV_8UC3, cv::COLOR_RGB2BGR}},
+      {encodings::BGR8, {CV_8UC3, -1}},
+      {encodings::RGBA8, {CV_8UC4, cv::COLOR_RGBA2BGR}},
+      {encodings::BGRA8, {CV_8UC4, cv::COLOR_BGRA2BGR}},
+      {encodings::MONO8, {CV_8UC1, cv::COLOR_GRAY2BGR}},
+      {encodings::TYPE_8UC1, {CV_8UC1, cv::COLOR_GRAY2BGR}},
+      {encodings::TYPE_8UC3, {CV_8UC3, -1}},
+      {encodings::TYPE_16UC1, {CV_16UC1, -1}},
+      {encodings::MONO16, {CV_16UC1, -1}},
+      {encodings::TYPE_32FC1, {CV_32FC1, -1}}};
+  return known;
+}
+
+cv::Mat ImageOf(const std::string& place, sensor_msgs::Image message) {
+  const auto found = RosEncodings().find(message.encoding);
+  if (found == RosEncodings().end() || message.is_bigendian != 0) {
+    throw InputError(
+        place + ": encoding '" + message.encoding +
+        "': expected rgb8, bgr8, mono8, 16UC1 or 32FC1, little-endian");
+  }
+  const RosEncoding& encoding = found->second;
+  const std::uint32_t width = message.width;
+  const std::uint32_t height = message.height;
+  if (width < 1 || height < 1 || width > kMaxRosSide || height > kMaxRosSide ||
+      message.step < width * CV_ELEM_SIZE(encoding.type) ||
+      message.data.size() < std::size_t{message.step} * height) {
+    throw InputError(place + ": image of " +
+                     std::to_string(message.data.size()) + " bytes: expected " +
+                     std::to_string(width) + "x" + std::to_string(height) +
+                     " " + message.encoding);
+  }
+  const cv::Mat raw(static_cast<int>(height), static_cast<int>(width),
+                    encoding.type, message.data.data(), message.step);
+  if (encoding.conversion < 0) return raw.clone();
+  cv::Mat image;
+  cv::cvtColor(raw, image, encoding.conversion);
+  return image;
+}
+
+cv::Mat ImageOf(const std::string& place,
+                sensor_msgs::CompressedImage message) {
+  const bool is_depth =
+      message.format.find("compressedDepth") != std::string::npos;
+  if (is_depth) {
+    // A configuration is before the PNG: what it is for, two numbers.
+    constexpr std::size_t kConfiguration = 12;
+    if (message.format.rfind(encodings::TYPE_32FC1, 0) == 0) {
+      throw InputError(place + ": '" + message.format +
+                       "': expected 16UC1; compressedDepth");
+    }
+    const auto begin = message.data.begin();
+    message.data.erase(begin,
+                       begin + std::min(kConfiguration, message.data.size()));
+  }
+  const int flags = is_depth ? cv::IMREAD_UNCHANGED : cv::IMREAD_COLOR;
+  return DecodeImage(place, message.data, flags);
+}
+
+Calibration CalibrationOf(const std::string& place,
+                          const sensor_msgs::CameraInfo& message) {
+  if (message.width > kMaxRosSide || message.height > kMaxRosSide) {
+    throw InputError(place + ": " + std::to_string(message.width) + "x" +
+                     std::to_string(message.height) +
+                     " pixels: expected 20000 at most");
+  }
+  Calibration result;
+  result.camera.width = static_cast<int>(message.width);
+  result.camera.height = static_cast<int>(message.height);
+  result.lens = MakeLensDistortion(place, message.distortion_model, message.D);
+  cv::Mat_<double> matrix(3, 3);
+  std::copy(message.K.begin(), message.K.end(), matrix.begin());
+  SetIntrinsics(place, matrix, &result.camera);
+  return result;
+}
+
+/// A bag that librosbag-storage reads.
+class StoredRosBag : public RosBag {
+ public:
+  explicit StoredRosBag(const std::string& path) : path_(path) {
+    CheckRosBag(path);
+    // What goes wrong is in the exceptions.
+    console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+    Locked([&] {
+      bag_ = std::make_unique<rosbag::Bag>(path);
+      ForEachMessage([&](const rosbag::MessageInstance& message) {
+        topics_[message.getTopic()].push_back(message);
+      });
+    });
   }
 
-  std::uint64_t size() const { return size_; }
-
-  std::string Read(std::uint64_t offset, std::uint64_t count) {
-    if (offset > size_ || count > size_ - offset) Fail();
-    std::string bytes(count, '\0');
-    stream_.seekg(static_cast<std::streamoff>(offset));
-    stream_.read(bytes.data(), static_cast<std::streamsize>(count));
-    if (static_cast<std::uint64_t>(stream_.gcount()) != count) Fail();
-    return bytes;
+  std::vector<std::string> ImageTopics() const override {
+    std::vector<std::string> names;
+    for (const auto& [name, messages] : topics_) {
+      if (!HasCamera(name)) names.push_back(name);
+    }
+    return names;
   }
 
-  std::uint32_t ReadLength(std::uint64_t offset) {
-    std::uint32_t length = 0;
-    std::memcpy(&length, Read(offset, sizeof(length)).data(), sizeof(length));
-    return length;
+  bool HasCamera(const std::string& topic) const override {
+    const auto found = topics_.find(topic);
+    return found != topics_.end() &&
+           IsA<sensor_msgs::CameraInfo>(found->second.front().getDataType());
   }
 
-  [[noreturn]] void Fail() const {
-    throw InputError(path_ + ": " + std::to_string(size_) +
-                     " bytes that are no .bag of ROS 1, version 2.0, or a "
-                     "truncated one");
+  std::vector<std::vector<double>> Times(
+      const std::vector<std::string>& topics) const override {
+    std::vector<std::vector<double>> times(topics.size());
+    Locked([&] {
+      // In the order of time, so that no chunk is decompressed twice.
+      ForEachMessage([&](const rosbag::MessageInstance& message) {
+        const std::string& topic = message.getTopic();
+        const auto found = std::find(topics.begin(), topics.end(), topic);
+        if (found == topics.end()) return;
+        std::vector<double>& row = times[found - topics.begin()];
+        const std::string place = PlaceOf(topic, row.size());
+        const auto header = Parse<std_msgs::Header>(place, BytesOf(message));
+        row.push_back(header.stamp.toSec());
+      });
+    });
+    return times;
   }
 
-  [[noreturn]] void FailAsCompressed(const std::string& how) const {
-    throw InputError(path_ + ": compressed by " + how +
-                     ": expected none, as after 'rosbag decompress'");
+  cv::Mat Image(const std::string& topic, int i) const override {
+    const std::string place = PlaceOf(topic, i);
+    if (IsA<sensor_msgs::Image>(topics_.at(topic).at(i).getDataType())) {
+      return ImageOf(place, Read<sensor_msgs::Image>(topic, i));
+    }
+    return ImageOf(place, Read<sensor_msgs::CompressedImage>(topic, i));
+  }
+
+  Calibration Camera(const std::string& topic) const override {
+    return CalibrationOf(PlaceOf(topic, 0),
+                         Read<sensor_msgs::CameraInfo>(topic, 0));
   }
 
  private:
+  static bool IsRead(const rosbag::ConnectionInfo* connection) {
+    const std::string& type = connection->datatype;
+    return IsA<sensor_msgs::Image>(type) ||
+           IsA<sensor_msgs::CompressedImage>(type) ||
+           IsA<sensor_msgs::CameraInfo>(type);
+  }
+
+  static std::vector<std::uint8_t> BytesOf(
+      const rosbag::MessageInstance& message) {
+    std::vector<std::uint8_t> bytes(message.size());
+    ros::serialization::OStream stream(
+        bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    message.write(stream);
+    return bytes;
+  }
+
+  /// A message, or what it begins with.
+  template <typename Message>
+  static Message Parse(const std::string& place,
+                       std::vector<std::uint8_t> bytes) {
+    try {
+      CheckedStream stream(&bytes);
+      Message message;
+      ros::serialization::deserialize(stream, message);
+      return message;
+    } catch (const ros::serialization::StreamOverrunException&) {
+      throw InputError(place + ": is truncated");
+    }
+  }
+
+  template <typename Message>
+  Message Read(const std::string& topic, int i) const {
+    std::vector<std::uint8_t> bytes;
+    Locked([&] { bytes = BytesOf(topics_.at(topic).at(i)); });
+    return Parse<Message>(PlaceOf(topic, i), std::move(bytes));
+  }
+
+  /// Calls something for every message that IsRead(), ordered by time.
+  template <typename Action>
+  void ForEachMessage(const Action& action) const {
+    rosbag::View view(*bag_, IsRead, ros::Time());
+    for (const rosbag::MessageInstance& message : view) action(message);
+  }
+
+  /// The library uses buffers of the bag even to read.
+  template <typename Action>
+  void Locked(const Action& action) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    try {
+      action();
+    } catch (const InputError&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      throw InputError(path_ + ": " + error.what());
+    }
+  }
+
+  std::string PlaceOf(const std::string& topic, std::size_t i) const {
+    return path_ + ": " + topic + ", message " + std::to_string(i);
+  }
+
   std::string path_;
-  std::ifstream stream_;
-  std::uint64_t size_ = 0;
+  mutable std::mutex mutex_;
+  std::unique_ptr<rosbag::Bag> bag_;
+  std::map<std::string, std::vector<rosbag::MessageInstance>> topics_;
 };
 
-RosBag::RosBag(const std::string& path) : path_(path) {
-  Records records(path);
-  const std::uint64_t begin = sizeof(kMagic) - 1;
-  if (records.size() < begin || records.Read(0, begin) != kMagic) {
-    records.Fail();
-  }
-  Scan(&records, begin, records.size(), /*is_chunk=*/false);
-}
+}  // namespace
 
-void RosBag::Scan(Records* records, std::uint64_t begin, std::uint64_t end,
-                  bool is_chunk) {
-  for (std::uint64_t at = begin; at < end;) {
-    const std::uint32_t header_size = records->ReadLength(at);
-    if (header_size > kMaxHeader) records->Fail();
-    const Fields header = FieldsOf(records->Read(at + 4, header_size));
-    at += 4 + std::uint64_t{header_size};
-    const std::uint32_t size = records->ReadLength(at);
-    at += 4;
-    if (at > end || size > end - at) records->Fail();
-    const int kind = NumberIn<std::uint8_t>(header, "op");
-    if (kind == kConnection) {
-      const Fields data = FieldsOf(records->Read(at, size));
-      const std::string topic = TextIn(header, "topic");
-      topic_of_[NumberIn<std::uint32_t>(header, "conn")] = topic;
-      topics_[topic].type = TextIn(data, "type");
-    } else if (kind == kMessage) {
-      const auto topic =
-          topic_of_.find(NumberIn<std::uint32_t>(header, "conn"));
-      if (topic == topic_of_.end()) records->Fail();
-      topics_[topic->second].offsets.push_back(at);
-      topics_[topic->second].bytes.push_back(size);
-    } else if (kind == kChunk && !is_chunk) {
-      const std::string compression = TextIn(header, "compression");
-      if (compression != "none") records->FailAsCompressed(compression);
-      Scan(records, at, at + size, /*is_chunk=*/true);
-    }
-    at += size;
-  }
-}
-
-std::string RosBag::Message(const Topic& topic, int i,
-                            std::uint32_t most) const {
-  return Records(path_).Read(topic.offsets.at(i),
-                             std::min(topic.bytes.at(i), most));
+std::unique_ptr<RosBag> OpenRosBag(const std::string& path) {
+  return std::make_unique<StoredRosBag>(path);
 }
 
 }  // namespace splitfusion

@@ -1,54 +1,52 @@
 #ifndef SPLITFUSION_LIB_SEQUENCE_ROS_BAG_H_
 #define SPLITFUSION_LIB_SEQUENCE_ROS_BAG_H_
 
-#include <cstdint>
-#include <map>
+#include <memory>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
+#include "splitfusion/lib/sequence/calibration.h"
+
 namespace splitfusion {
 
-/// A file of ROS 1, `.bag` of version 2.0 without compression: which messages
-/// it has, and where. Thread-safe.
+/// Images and cameras of a file of ROS 1, `.bag`. The headers of ROS stay out
+/// of this one. Thread-safe.
 class RosBag {
  public:
-  /// One topic.
-  struct Topic {
-    std::string type;  ///< "sensor_msgs/Image".
-    /// Of its messages, in the order of the file.
-    std::vector<std::uint64_t> offsets;
-    /// Their sizes.
-    std::vector<std::uint32_t> bytes;
-  };
+  virtual ~RosBag() = default;
 
-  /// Goes through the records, without the messages themselves.
+  /// Names of the topics that have images, `sensor_msgs/Image` or
+  /// `CompressedImage`, in alphabetical order.
+  virtual std::vector<std::string> ImageTopics() const = 0;
+
+  /// Whether there are messages `sensor_msgs/CameraInfo` of a topic.
+  virtual bool HasCamera(const std::string& topic) const = 0;
+
+  /// Time stamps of the images of topics, seconds: one row a topic.
   ///
-  /// @throw InputError if it is missing, truncated, no such file, or
-  ///     compressed.
-  explicit RosBag(const std::string& path);
+  /// @throw InputError if one cannot be read.
+  virtual std::vector<std::vector<double>> Times(
+      const std::vector<std::string>& topics) const = 0;
 
-  /// By name.
-  const std::map<std::string, Topic>& topics() const { return topics_; }
-
-  /// Bytes of the i-th message of a topic, `most` of them at most.
+  /// The i-th image of a topic as it is: colour as HxW 8UC3, BGR; depth as HxW
+  /// 16UC1, millimetres, or 32FC1, metres.
   ///
-  /// @throw InputError if it cannot be read.
-  std::string Message(const Topic& topic, int i,
-                      std::uint32_t most = 0xffffffff) const;
+  /// @throw InputError if it is broken or of an encoding that is not known.
+  virtual cv::Mat Image(const std::string& topic, int i) const = 0;
 
-  /// The file.
-  const std::string& path() const { return path_; }
-
- private:
-  class Records;
-  /// Goes through what lies between two offsets: a chunk, or the file.
-  void Scan(Records* records, std::uint64_t begin, std::uint64_t end,
-            bool is_chunk);
-
-  std::string path_;
-  std::map<std::string, Topic> topics_;
-  std::map<std::uint32_t, std::string> topic_of_;  // By connection.
+  /// Intrinsics and lens of the first CameraInfo of a topic; no depth scale.
+  ///
+  /// @throw InputError if it is broken, or has distortion of another model than
+  ///     LensDistortion.
+  virtual Calibration Camera(const std::string& topic) const = 0;
 };
+
+/// Opens a bag of version 2.0, compressed or not.
+///
+/// @throw InputError if it is missing, truncated, no such file, encrypted or
+///     has no index, or if this build lacks librosbag-storage.
+std::unique_ptr<RosBag> OpenRosBag(const std::string& path);
 
 }  // namespace splitfusion
 

@@ -1,12 +1,10 @@
 #include <cstdio>
 #include <filesystem>
-#include <set>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/sequence/container_formats.h"
 #include "splitfusion/lib/sequence/open_files.h"
 #include "splitfusion/lib/sequence/ros_bag.h"
-#include "splitfusion/lib/sequence/ros_messages.h"
 
 namespace splitfusion {
 namespace {
@@ -20,35 +18,31 @@ bool Contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-bool IsImage(const RosBag::Topic& topic) {
-  return topic.type == kRosImage || topic.type == kRosCompressedImage;
-}
-
 /// A bag with the topics of its depth and colour.
 class RgbdBag {
  public:
-  explicit RgbdBag(const std::string& path) : bag_(path) {
-    for (const auto& [name, topic] : bag_.topics()) {
-      if (!IsImage(topic) || topic.offsets.empty()) continue;
+  explicit RgbdBag(const std::string& path) : bag_(OpenRosBag(path)) {
+    for (const std::string& name : bag_->ImageTopics()) {
       Choose(name, IsDepthTopic(name) ? &depth_ : &color_);
     }
-    if (!depth_.empty() && !color_.empty()) return;
-    throw InputError(path +
-                     ": no images of depth and colour: expected topics of "
-                     "sensor_msgs with 'depth', and with 'rgb' or 'color'");
+    if (depth_.empty() || color_.empty()) {
+      throw InputError(path +
+                       ": no images of depth and colour: expected topics of "
+                       "sensor_msgs with 'depth', and with 'rgb' or 'color'");
+    }
+    const std::vector<std::vector<double>> times =
+        bag_->Times({color_, depth_});
+    frames_ = AssociateByTime(Timed("rgb", times[0]), Timed("depth", times[1]),
+                              kBagTolerance);
   }
 
   /// Whether depth is said to be registered to colour.
   bool IsRegistered() const { return Preference(depth_) > 0; }
 
-  std::vector<AssociatedFiles> Frames() const {
-    return AssociateByTime(Timed(color_), Timed(depth_), kBagTolerance);
-  }
+  const std::vector<AssociatedFiles>& frames() const { return frames_; }
 
   cv::Mat Read(bool depth, int i) const {
-    const std::string& name = depth ? depth_ : color_;
-    const RosBag::Topic& topic = bag_.topics().at(name);
-    return RosImage(PlaceOf(name, i), topic.type, bag_.Message(topic, i));
+    return bag_->Image(depth ? depth_ : color_, i);
   }
 
   /// Of the camera of a topic, if that says anything.
@@ -58,12 +52,7 @@ class RgbdBag {
     for (fs::path at = depth ? depth_ : color_; at.has_relative_path();) {
       at = at.parent_path();
       const std::string name = (at / "camera_info").string();
-      const auto found = bag_.topics().find(name);
-      if (found == bag_.topics().end() || found->second.offsets.empty() ||
-          found->second.type != kRosCameraInfo) {
-        continue;
-      }
-      return RosCamera(PlaceOf(name, 0), bag_.Message(found->second, 0));
+      if (bag_->HasCamera(name)) return bag_->Camera(name);
     }
     return std::nullopt;
   }
@@ -89,27 +78,21 @@ class RgbdBag {
     }
   }
 
-  std::vector<TimedFile> Timed(const std::string& name) const {
-    const RosBag::Topic& topic = bag_.topics().at(name);
+  static std::vector<TimedFile> Timed(const std::string& folder,
+                                      const std::vector<double>& times) {
     std::vector<TimedFile> files;
-    for (int i = 0; i < static_cast<int>(topic.offsets.size()); ++i) {
-      char file[32];
-      std::snprintf(file, sizeof(file), "%s/%06d.png",
-                    name == depth_ ? "depth" : "rgb", i);
-      files.push_back(
-          {RosTime(PlaceOf(name, i), bag_.Message(topic, i, kRosTimeBytes)),
-           file});
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      char name[32];
+      std::snprintf(name, sizeof(name), "/%06zu.png", i);
+      files.push_back({times[i], folder + name});
     }
     return files;
   }
 
-  std::string PlaceOf(const std::string& name, int i) const {
-    return bag_.path() + ": " + name + ", message " + std::to_string(i);
-  }
-
-  RosBag bag_;
+  std::unique_ptr<RosBag> bag_;
   std::string depth_;  // Names of topics.
   std::string color_;
+  std::vector<AssociatedFiles> frames_;
 };
 
 class RosBagFormat : public SequenceFormat {
@@ -123,7 +106,7 @@ class RosBagFormat : public SequenceFormat {
 
   std::vector<AssociatedFiles> FindFrames(
       const std::string& sequence) const override {
-    std::vector<AssociatedFiles> frames = bags_.At(sequence)->Frames();
+    std::vector<AssociatedFiles> frames = bags_.At(sequence)->frames();
     if (!frames.empty()) return frames;
     throw InputError(sequence +
                      ": 0 frames: expected colour and depth within 0.02 s");

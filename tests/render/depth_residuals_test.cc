@@ -3,8 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "render/plate_views.h"
+#include "splitfusion/lib/base/hdf5_file.h"
 #include "support/expect_input_error.h"
 #include "support/temporary_folder.h"
 
@@ -67,6 +72,34 @@ TEST(DepthResiduals, AreReadAsTheyWereWritten) {
   EXPECT_TRUE(ReadResiduals(folder / "none.h5").empty());
   folder.Write("broken.h5", "no HDF5");
   ExpectInputError([&] { ReadResiduals(folder / "broken.h5"); }, "broken.h5");
+}
+
+TEST(DepthResiduals, OfANewerVersionAreRefused) {
+  const TemporaryFolder folder;
+  const auto write = [&](std::optional<std::int32_t> version) {
+    Hdf5Writer file(folder / "residuals.h5");
+    std::vector<std::int32_t> rows = {1};
+    std::vector<float> depths = {2};
+    if (version) file.Attribute("format_version", &*version);
+    file.Column("residuals/frame", &rows);
+    file.Column("residuals/node", &rows);
+    file.Column("residuals/depth", &depths);
+    file.Close();
+  };
+  // Files of the time before there were versions have none.
+  for (const auto version :
+       std::vector<std::optional<std::int32_t>>{{}, 0, 1}) {
+    write(version);
+    EXPECT_EQ(ReadResiduals(folder / "residuals.h5").size(), 1u);
+  }
+  for (const std::int32_t version : {2, -1}) {
+    write(version);
+    ExpectInputError(
+        [&] { ReadResiduals(folder / "residuals.h5"); },
+        "residuals.h5: field 'format_version': " + std::to_string(version) +
+            ": expected at most 1; a file of a newer version "
+            "needs its programs");
+  }
 }
 
 }  // namespace

@@ -62,48 +62,6 @@ write_camera() {
     "depth_scale $8" >"$1/camera.txt"
 }
 
-# image_size PNG: "WIDTH HEIGHT".
-image_size() {
-  "$python" -c 'import sys, splitfusion_io as sf
-shape = sf.read_png(sys.argv[1]).shape
-print(shape[1], shape[0])' "$1" || refuse "$1: expected a PNG file"
-}
-
-# matrix_intrinsics FILE: "fx fy cx cy" of a matrix of 3 or 4 rows.
-matrix_intrinsics() {
-  local text
-  text="$(awk 'NF { ++n } NF && n == 1 { fx = $1; cx = $3 }
-               NF && n == 2 { fy = $2; cy = $3 }
-               END { if (fx > 0 && fy > 0) print fx, fy, cx, cy }' "$1")"
-  [[ -n "$text" ]] || refuse "$1: expected a matrix of intrinsics"
-  echo "$text"
-}
-
-# write_pairs SEQUENCE RATE COLOR DEPTH: associations.txt of the images whose
-# numbers (the last digits of their names) are equal, RATE images a second.
-# COLOR and DEPTH are patterns below SEQUENCE.
-write_pairs() {
-  (
-    cd "$1"
-    # shellcheck disable=SC2086
-    paste -d' ' <(numbered $3) <(numbered $4) | awk -v rate="$2" '
-      $1 != $3 { bad = 1; exit }
-      { t = sprintf("%.6f", $1 / rate); print t, $2, t, $4 }
-      END { exit bad }' >associations.txt
-  ) || refuse "$1: expected a depth image for each colour image"
-  [[ -s "$1/associations.txt" ]] || refuse "$1: no image '$3': expected some"
-}
-
-# numbered FILE...: "NUMBER FILE" of each that is there.
-numbered() {
-  local file name
-  for file in "$@"; do
-    [[ -e "$file" ]] || continue
-    name="$(basename "$file" | sed -E 's/\.(color|depth)//; s/\.[a-z]+$//')"
-    [[ "$name" =~ ([0-9]+)$ ]] && echo "$((10#${BASH_REMATCH[1]})) $file"
-  done
-}
-
 # reconstruct SEQUENCE RUN FLAG...: what is finished is kept.
 reconstruct() {
   local sequence="$1" run="$2" status=0

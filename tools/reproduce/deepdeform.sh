@@ -2,8 +2,8 @@
 # Reconstructs sequences of DeepDeform (Bozic et al., CVPR 2020) and prints the
 # 3D error of the motions that are annotated.
 #   tools/reproduce/deepdeform.sh FOLDER... --output=DIR [flags of sf_run]
-# FOLDER: seqNNN of train or val: color (or rgb), depth (millimetres) and
-# intrinsics.txt (or camera.txt). The masks of a few frames, mask/FRAME.png or
+# FOLDER: seqNNN of train or val: color, depth (millimetres) and intrinsics.txt
+# (or camera.txt). The masks of a few frames, mask/FRAME.png or
 # mask/FRAME_OBJECT.png, are given to sf_run as non-rigid objects, which it
 # keeps in the frames between; --masks=none --preset=dynamicfusion takes the
 # scene for one, --masks=DIR others. Annotations are
@@ -30,28 +30,15 @@ for folder in "${folders[@]}"; do
   need "$folder" depth
   folder="$(realpath "$folder")"
   name="$(basename "$folder")"
-  sequence="$output/sequences/$name"
-  color=color
-  [[ -d "$folder/color" ]] || color=rgb
-  need "$folder" "$color"
-  link_in "$folder" "$sequence" "$color" depth mask camera.txt
-  if [[ ! -e "$sequence/camera.txt" ]]; then
-    need "$folder" intrinsics.txt
-    camera="$(matrix_intrinsics "$folder/intrinsics.txt")" || exit 2
-    size="$(image_size "$(ls "$folder"/depth/*.png | sed -n 1p)")" || exit 2
-    # shellcheck disable=SC2086
-    write_camera "$sequence" $size $camera 1000
+  masks=(--masks=none)
+  if [[ -d "$folder/mask" && " ${flags[*]-} " != *" --masks="* ]]; then
+    labels="$output/$name.labels.csv"
+    labels_of "$folder" >"$labels"
+    masks=(--masks="$folder/mask" --max_missed_frames=100000)
+    [[ ! -s "$labels" ]] || masks+=(--labels="$labels")
   fi
-  write_pairs "$sequence" 30 "$color/*.jpg" 'depth/*.png'
-  more=(--format=tum --pictures_every=0 --masks=none)
-  if [[ -d "$sequence/mask" && " ${flags[*]-} " != *" --masks="* ]]; then
-    labels_of "$sequence" >"$sequence/labels.csv"
-    more=(--format=tum --pictures_every=0 --masks="$sequence/mask"
-      --max_missed_frames=100000)
-    [[ ! -s "$sequence/labels.csv" ]] ||
-      more+=(--labels="$sequence/labels.csv")
-  fi
-  reconstruct "$sequence" "$output/$name" "${more[@]}"
+  reconstruct "$folder" "$output/$name" --format=deepdeform --pictures_every=0 \
+    "${masks[@]}"
   evaluate "$output/$name" --depth_every=1
   results+=("$output/$name" "$folder")
 done
