@@ -19,10 +19,10 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kMoments = 30;      // Speed: at which velocities are measured.
-constexpr int kMostPairs = 12;    // Speed.
-constexpr int kTriedPairs = 60;   // Speed: until so many are found.
-constexpr int kFeatures = 1500;   // Speed.
+constexpr int kMoments = 30;     // Speed: at which velocities are measured.
+constexpr int kMostPairs = 12;   // Speed.
+constexpr int kTriedPairs = 60;  // Speed: until so many are found.
+constexpr int kFeatures = 1500;  // Speed.
 /// Features that have to agree on a motion.
 constexpr int kLeastMatches = 40;
 /// Features of frames that follow one another agree within this, pixels ...
@@ -104,21 +104,27 @@ std::optional<AgreeingFeatures> Agreeing(const FeatureFrame& from,
   std::vector<int> inliers;
   if (!cv::solvePnPRansac(points, pixels, intrinsics, cv::noArray(), rotation,
                           translation, false, kTrials,
-                          static_cast<float>(reach), kConfidence, inliers) ||
-      static_cast<int>(inliers.size()) < kLeastMatches) {
+                          static_cast<float>(reach), kConfidence, inliers)) {
     return std::nullopt;
   }
   AgreeingFeatures agreeing{{rotation[0], rotation[1], rotation[2],
                              translation[0], translation[1], translation[2]},
                             {}};
+  // It is refined without a limit, and may have gone astray.
   cv::Matx33d turned;
   cv::Rodrigues(rotation, turned);
   for (const int i : inliers) {
-    // One behind the camera has an image, too, for OpenCV.
     const cv::Vec3d there =
-        turned * cv::Vec3d(cv::Point3d(points[i])) + translation;
-    if (there[2] < kLeastDepth) continue;
+        turned * cv::Vec3d(points[i].x, points[i].y, points[i].z) + translation;
+    if (!(there[2] > kLeastDepth)) continue;
+    const cv::Vec3d place = intrinsics * there / there[2];
+    const double off =
+        std::hypot(place[0] - pixels[i].x, place[1] - pixels[i].y);
+    if (off > reach) continue;
     agreeing.matches.emplace_back(matches[i].queryIdx, matches[i].trainIdx);
+  }
+  if (static_cast<int>(agreeing.matches.size()) < kLeastMatches) {
+    return std::nullopt;
   }
   return agreeing;
 }

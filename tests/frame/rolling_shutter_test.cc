@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "splitfusion/lib/base/median.h"
 #include "support/rolling_room.h"
@@ -34,7 +35,7 @@ TEST(RollingShutter, IsUndone) {
   const RollingShutter shutter(frame.depth, rolling.camera, motion);
   const float before = Median(Distances(frame.depth, expected.depth));
   const float after = Median(Distances(shutter.Depth(), expected.depth));
-  EXPECT_GT(before, 0.005f);
+  EXPECT_GT(before, 0.003f);
   EXPECT_LT(after, 0.0005f);
   // Places lead to the same cells of the pattern.
   int same = 0, all = 0;

@@ -134,9 +134,8 @@ TEST(SplitFusion, AFrameWithoutDepthIsLostAndSurvived) {
     EXPECT_EQ(StateOf(found, 0), "tracked");
     EXPECT_LT(PoseError(run, run.fusion()), 0.02);
     EXPECT_EQ(run.fusion().trajectory().size(), 5u);
-    const FrameMotions* motions =
-        run.fusion().surfaces().at(0)->history().Find(3);
-    ASSERT_NE(motions, nullptr);
+    const auto motions = run.fusion().surfaces().at(0)->history().Find(3);
+    ASSERT_TRUE(motions.has_value());
     EXPECT_FALSE(motions->tracked);
   }
 }

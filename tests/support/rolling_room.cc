@@ -20,7 +20,7 @@ const RoomPlane kPlanes[] = {
     {{0, 1, 0}, 0.9}, {{0, 0, 1}, 2.3}, {{1, 0, 0}, 1.1}};
 
 /// Grey value of the cell of 3 cm that a point lies in.
-std::uint8_t Pattern(const Eigen::Vector3d& point) {
+std::uint8_t GreyOfCell(const Eigen::Vector3d& point) {
   std::uint32_t hash = 2166136261u;
   for (int k = 0; k < 3; ++k) {
     // Off the planes, on which rounding would decide.
@@ -66,7 +66,7 @@ Frame RollingRoom::At(int i) const {
       }
       if (nearest > 5) continue;
       depth(v, u) = static_cast<float>(nearest);
-      const std::uint8_t grey = Pattern(pose * (nearest * ray));
+      const std::uint8_t grey = GreyOfCell(pose * (nearest * ray));
       color(v, u) = {grey, grey, grey};
     }
   });
