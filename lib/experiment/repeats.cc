@@ -50,7 +50,7 @@ std::string DifferencesBeyondRepeats(const NamedValues& before,
                                      const NamedValues& now) {
   NamedValues aligned = now;
   for (const char* key : kVoxels) {
-    const double a = NumberOfPart(before, key), b = NumberAt(now, key);
+    const double a = NumberOfPart(before, key), b = NumberOfPart(now, key);
     // Two repeats may be shifted in opposite directions.
     const bool shifted = a > 0 && std::abs(b / a - 1) < 2.5 * kMost;
     if (shifted) aligned[key] = before.at(key);
