@@ -8,6 +8,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/deformation/mesh_skinning.h"
+#include "splitfusion/lib/deformation/node_births.h"
 #include "splitfusion/lib/deformation/surface_edges.h"
 
 namespace splitfusion {

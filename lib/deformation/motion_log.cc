@@ -7,6 +7,9 @@
 #include <numeric>
 #include <utility>
 
+#include "splitfusion/lib/base/spool_file.h"
+#include "splitfusion/lib/deformation/node_births.h"
+
 namespace splitfusion {
 namespace {
 

@@ -8,12 +8,13 @@
 #include <optional>
 #include <vector>
 
-#include "splitfusion/lib/base/spool_file.h"
 #include "splitfusion/lib/deformation/motion_history.h"
-#include "splitfusion/lib/deformation/node_births.h"
 #include "splitfusion/lib/deformation/node_change.h"
 
 namespace splitfusion {
+
+class NodeBirths;
+class SpoolFile;
 
 /// Motions of a surface that is being tracked, by ascending frame, while its
 /// graph grows: as MotionHistory, nodes that are born later have motions in the

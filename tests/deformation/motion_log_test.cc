@@ -9,6 +9,7 @@
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
 #include "splitfusion/lib/deformation/mesh_skinning.h"
+#include "splitfusion/lib/deformation/node_births.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 
