@@ -29,8 +29,10 @@ constexpr int kLeastMatches = 40;
 constexpr double kStepReach = 3;
 /// ... and of frames that are distorted differently.
 constexpr double kPairReach = 12;
-/// Pairs whose rotations differ by less a frame, degrees, tell nothing.
+/// Pairs whose rotations differ by less a frame, degrees, tell nothing ...
 constexpr double kLeastTurn = 0.4;
+/// ... nor if that is less than so many times as much as is uncertain of it.
+constexpr double kLeastCertainty = 4;
 /// What is nearer is left out, metres: it may come to lie behind the camera.
 constexpr double kLeastDepth = 0.2;
 /// Errors of features from which on they count less, pixels.
@@ -134,6 +136,7 @@ struct Moments {
   std::vector<FeatureFrame> frames;
   std::vector<Motion> velocities;  // Of points, a second.
   std::vector<double> intervals;   // To the frame before, seconds.
+  std::vector<double> errors;      // Of the turn, radians a frame.
 
   Eigen::Vector3d Turn(int i) const {
     return intervals[i] * Eigen::Vector3d(velocities[i].data());
@@ -161,6 +164,7 @@ Moments FindMoments(const std::function<std::optional<Frame>(int)>& read,
   struct Moment {
     std::array<FeatureFrame, 3> frames;
     std::optional<Motion> velocity;
+    double error = 0;
   };
   std::vector<Moment> found(count);
   tbb::parallel_for(0, count, [&](int i) {
@@ -176,6 +180,10 @@ Moments FindMoments(const std::function<std::optional<Frame>(int)>& read,
     const std::optional<Motion> next = VelocityBetween(now, after, camera);
     if (!next) moment.velocity.reset();
     if (!moment.velocity) return;
+    const Eigen::Map<const Eigen::Vector3d> turn(moment.velocity->data());
+    const Eigen::Map<const Eigen::Vector3d> next_turn(next->data());
+    moment.error =
+        (now.timestamp - before.timestamp) * (next_turn - turn).norm() / 2;
     for (std::size_t k = 0; k < next->size(); ++k) {
       (*moment.velocity)[k] = ((*moment.velocity)[k] + (*next)[k]) / 2;
     }
@@ -186,6 +194,7 @@ Moments FindMoments(const std::function<std::optional<Frame>(int)>& read,
     moments.velocities.push_back(*moment.velocity);
     moments.intervals.push_back(moment.frames[1].timestamp -
                                 moment.frames[0].timestamp);
+    moments.errors.push_back(moment.error);
     moments.frames.push_back(std::move(moment.frames[1]));
   }
   return moments;
@@ -199,8 +208,11 @@ std::vector<FramePair> FindPairs(const Moments& moments,
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       const double turn = (moments.Turn(i) - moments.Turn(j)).norm();
-      if (turn > kLeastTurn * kPi<double> / 180)
+      const double uncertain = moments.errors[i] + moments.errors[j];
+      if (turn > kLeastTurn * kPi<double> / 180 &&
+          turn > kLeastCertainty * uncertain) {
         all.push_back({i, j, turn, {}});
+      }
     }
   }
   std::stable_sort(

@@ -69,9 +69,9 @@ int MotionLog::BlockOf(int i) const {
       block_ends_.begin());
 }
 
-const MotionLog::Block::Frame& MotionLog::HeadOf(int i) const {
+const MotionLog::SpooledFrame& MotionLog::HeadOf(int i) const {
   const int b = BlockOf(i);
-  const std::vector<Block::Frame>& frames = blocks_[b]->frames;
+  const std::vector<SpooledFrame>& frames = blocks_[b]->frames;
   return frames[frames.size() - (block_ends_[b] - i)];
 }
 
@@ -89,7 +89,7 @@ FrameMotions MotionLog::At(int i) const {
 
 FrameMotions MotionLog::Load(int i) const {
   const Block& block = *blocks_[BlockOf(i)];
-  const Block::Frame& head = HeadOf(i);
+  const SpooledFrame& head = HeadOf(i);
   const std::vector<int>& numbers = *block.numbers;
   const std::size_t seen_from = numbers.size() * sizeof(SpooledMotion);
   std::vector<char> bytes(seen_from + (head.has_seen ? numbers.size() : 0));
@@ -220,7 +220,7 @@ MotionLog MotionLog::Part(const std::vector<char>& nodes,
   for (const std::shared_ptr<const Block>& block : blocks_) {
     const auto begin = std::find_if(
         block->frames.begin(), block->frames.end(),
-        [&](const Block::Frame& f) { return f.index >= first_frame; });
+        [&](const SpooledFrame& f) { return f.index >= first_frame; });
     if (begin == block->frames.end()) continue;
     Block rest = *block;
     rest.frames.erase(rest.frames.begin(),

@@ -91,27 +91,28 @@ class MotionLog {
   /// That of a surface.
   static constexpr std::size_t kMemory = std::size_t{16} << 20;  // Speed.
 
+  /// A frame in the file.
+  struct SpooledFrame {
+    int index = 0;             ///< In the sequence.
+    bool tracked = true;       ///< As FrameMotions::tracked.
+    bool has_seen = false;     ///< Whether it is known what was seen.
+    std::uint64_t offset = 0;  ///< Of its bytes.
+  };
   /// Frames in the file, of the same nodes.
   struct Block {
-    struct Frame {
-      int index = 0;
-      bool tracked = true;
-      bool has_seen = false;
-      std::uint64_t offset = 0;
-    };
-    std::vector<Frame> frames;
-    std::shared_ptr<const std::vector<int>> numbers;  // Of the nodes then.
-    int nodes_ever = 0;                               // Until then.
-    int changes = 0;                                  // As `nodes_ever`.
+    std::vector<SpooledFrame> frames;                 ///< Ascending.
+    std::shared_ptr<const std::vector<int>> numbers;  ///< Of the nodes then.
+    int nodes_ever = 0;                               ///< Until then.
+    int changes = 0;                                  ///< As `nodes_ever`.
   };
-  /// Nodes that were born together; their numbers begin with `first`.
+  /// Nodes that were born together.
   struct Births {
-    int first = 0;
-    std::shared_ptr<const NodeBirths> nodes;  // By number.
+    int first = 0;                            ///< The first one's number.
+    std::shared_ptr<const NodeBirths> nodes;  ///< By number.
   };
 
   int BlockOf(int i) const;
-  const Block::Frame& HeadOf(int i) const;
+  const SpooledFrame& HeadOf(int i) const;
   FrameMotions Load(int i) const;
   void ForgetNeedlessBirths();
   void Spool();
