@@ -59,13 +59,11 @@ struct PipelineOptions {
   /// of a real room's map are not along the ray of today. Its loss, Tukey's,
   /// ends at 4.7 standard deviations of the depth noise (3 mm at its
   /// reference), where it is 95 % as efficient as least squares: what moves and
-  /// is no surface yet is left out. Rooms have directions that depth hardly
-  /// holds, which is why their colour weighs more.
+  /// is no surface yet is left out.
   std::string terms =
       std::string(kDeformingTerms) +
       " background.projective_depth(weight=0) "
-      "background.point_to_plane(weight=1,loss=tukey,scale=0.014) "
-      "background.color(weight=12,loss=huber,scale=0.01)";
+      "background.point_to_plane(weight=1,loss=tukey,scale=0.014)";
   int render_stride = 2;       ///< Model maps hold every n-th pixel.
   bool split_scene = true;     ///< False: one surface holds the whole scene.
   bool model_objects = true;   ///< False: moving things are only cut out.
