@@ -56,7 +56,10 @@ FrameReport SplitFusion::ProcessFrame(PreparedFrame prepared) {
   const Stopwatch stopwatch;
   const PreparedFrame rolled = prepared;
   const Rigid3d camera_motion = CameraMotion(prepared.frame.world_from_camera);
-  Unroll(camera_motion, SecondsSince(prepared.frame), &prepared);
+  // How a camera moves that is lost is not known.
+  if (background_state_ == TrackState::kTracked) {
+    Unroll(camera_motion, SecondsSince(prepared.frame), &prepared);
+  }
   const Frame& frame = prepared.frame;
   FrameReport report;
   report.frame = frame.index;
@@ -114,7 +117,8 @@ double SplitFusion::SecondsSince(const Frame& frame) const {
 void SplitFusion::UnrollAsTracked(const PreparedFrame& rolled,
                                   const std::vector<ModelSample>& samples,
                                   FrameReport* report) {
-  if (rolling_shutter_ == 0 || background_state_ != TrackState::kTracked) {
+  if (rolling_shutter_ == 0 || camera_was_lost_ ||
+      background_state_ != TrackState::kTracked) {
     return;
   }
   PreparedFrame again = rolled;

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "splitfusion/lib/base/chosen.h"
 #include "splitfusion/lib/base/spool_file.h"
 #include "splitfusion/lib/deformation/node_births.h"
 
@@ -49,16 +50,6 @@ NodeMotion MotionFrom(const char* bytes) {
   std::copy_n(stored.begin(), 9, motion.rotation.data());
   std::copy_n(stored.begin() + 9, 3, motion.translation.data());
   return motion;
-}
-
-template <typename T>
-std::vector<T> ChosenFrom(const std::vector<T>& values,
-                          const std::vector<char>& members) {
-  std::vector<T> chosen;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (members[i] != 0) chosen.push_back(values[i]);
-  }
-  return chosen;
 }
 
 }  // namespace
@@ -234,13 +225,13 @@ MotionLog MotionLog::Part(const std::vector<char>& nodes,
   for (const FrameMotions& frame : recent_) {
     if (frame.frame < first_frame) continue;
     part.recent_.push_back({frame.frame, frame.tracked,
-                            ChosenFrom(frame.motions, nodes),
-                            ChosenFrom(frame.seen, nodes)});
+                            Chosen(frame.motions, nodes),
+                            Chosen(frame.seen, nodes)});
     part.recent_bytes_ += BytesInMemory(part.recent_.back());
   }
   if (numbers_ == nullptr) return part;
   part.numbers_ =
-      std::make_shared<const std::vector<int>>(ChosenFrom(*numbers_, nodes));
+      std::make_shared<const std::vector<int>>(Chosen(*numbers_, nodes));
   part.nodes_ever_ = nodes_ever_;
   part.births_ = births_;
   part.changes_ = changes_;

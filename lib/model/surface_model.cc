@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "splitfusion/lib/base/chosen.h"
+
 namespace splitfusion {
 namespace {
 
@@ -153,17 +155,6 @@ std::vector<int> Numbers(const std::vector<char>& members) {
     if (members[i] != 0) numbers[i] = count++;
   }
   return numbers;
-}
-
-/// The values of the members; the last ones may have none.
-template <typename T>
-std::vector<T> Chosen(const std::vector<T>& values,
-                      const std::vector<char>& members) {
-  std::vector<T> chosen;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (members[i] != 0) chosen.push_back(values[i]);
-  }
-  return chosen;
 }
 
 DeformationGraph GraphOf(const DeformationGraph& graph,
