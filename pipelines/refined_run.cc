@@ -115,7 +115,7 @@ void RefineSurface(const std::map<int, Rigid3d>& poses,
     refinement->lines += RefinementLines(surface.id, windows);
   }
   WriteMotions(to.Surface(surface.id, surface.label) + "/motions.bin",
-               model.history);
+               model.history, model.graph.size());
   if (is_room) return;
   const StretchedArea stretch =
       WriteWarpedMeshes(to, surface.id, surface.label, model,

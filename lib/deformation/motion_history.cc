@@ -6,9 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <system_error>
+#include <sstream>
 #include <utility>
 
 #include "splitfusion/lib/base/atomic_file.h"
@@ -20,7 +19,7 @@ namespace splitfusion {
 namespace {
 
 /// Eight bytes at the beginning; the last two are the version.
-constexpr char kMagic[] = "SFMOTN03";
+constexpr char kMagic[] = "SFMOTN04";
 constexpr std::size_t kMagicBytes = 8;  // Format.
 /// R row by row, then t.
 using StoredMotion = std::array<float, 12>;
@@ -51,17 +50,16 @@ NodeMotion Restore(const StoredMotion& stored) {
 /// What a version of the file has.
 struct Version {
   const char* magic;
+  bool has_ranges;    // Of nodes that have motions in a frame; else all have.
   bool has_seen;      // Which nodes were.
   bool has_checksum;  // At the end.
-
-  std::uintmax_t BytesOfFrame(std::uintmax_t nodes) const {
-    return 8 + nodes * (sizeof(StoredMotion) + (has_seen ? 1 : 0));
-  }
 };
 
-constexpr std::array<Version, 3> kVersions = {{{kMagic, true, true},
-                                               {"SFMOTN02", false, true},
-                                               {"SFMOTN01", false, false}}};
+constexpr std::array<Version, 4> kVersions = {
+    {{kMagic, true, true, true},
+     {"SFMOTN03", false, true, true},
+     {"SFMOTN02", false, false, true},
+     {"SFMOTN01", false, false, false}}};
 
 /// That of a file that begins with `head`; null: of none.
 const Version* VersionOf(const std::string& head) {
@@ -79,89 +77,107 @@ void Append(const T& value, std::string* bytes) {
 /// Takes values off the content of a file, one after the other.
 class ByteReader {
  public:
-  ByteReader(const std::string& bytes, std::size_t begin)
-      : next_(bytes.data() + begin) {}
+  /// Those from `begin` to before `end`; `path`: of the file, for messages.
+  ByteReader(const std::string& path, const std::string& bytes,
+             std::size_t begin, std::size_t end)
+      : path_(path), next_(bytes.data() + begin), end_(bytes.data() + end) {}
+
+  /// @throw InputError if there are not so many values of this kind.
+  template <typename T>
+  void Expect(std::uint64_t values) const {
+    if (values <= left() / sizeof(T)) return;
+    throw InputError(path_ + ": ends " +
+                     std::to_string(values * sizeof(T) - left()) +
+                     " bytes early: expected a complete file");
+  }
 
   template <typename T>
   T Read() {
+    Expect<T>(1);
     T value;
     std::memcpy(&value, next_, sizeof(T));
     next_ += sizeof(T);
     return value;
   }
 
+  std::size_t left() const { return end_ - next_; }
+
  private:
+  const std::string& path_;
   const char* next_;
+  const char* end_;
 };
 
-std::string BytesOf(const MotionHistory& history) {
-  const std::size_t nodes =
-      history.frames.empty() ? 0 : history.frames.front().motions.size();
+/// Of all nodes, where a frame does not say which.
+std::vector<NodeRange> RangesOf(const FrameMotions& frame, int nodes) {
+  return frame.ranges.empty() ? std::vector<NodeRange>{{0, nodes}}
+                              : frame.ranges;
+}
+
+std::string BytesOf(const MotionHistory& history, int nodes) {
   std::string bytes(kMagic, kMagicBytes);
   Append(static_cast<std::uint32_t>(history.frames.size()), &bytes);
   Append(static_cast<std::uint32_t>(nodes), &bytes);
   for (const FrameMotions& frame : history.frames) {
-    assert(frame.motions.size() == nodes);
+    const std::vector<NodeRange> ranges = RangesOf(frame, nodes);
     Append(static_cast<std::int32_t>(frame.frame), &bytes);
     Append(static_cast<std::int32_t>(frame.tracked ? 1 : 0), &bytes);
+    Append(static_cast<std::uint32_t>(ranges.size()), &bytes);
+    std::size_t count = 0;
+    for (const NodeRange& range : ranges) {
+      Append(static_cast<std::uint32_t>(range.begin), &bytes);
+      Append(static_cast<std::uint32_t>(range.end), &bytes);
+      count += range.end - range.begin;
+    }
+    assert(frame.motions.size() == count);
     for (const NodeMotion& motion : frame.motions) {
       Append(Store(motion), &bytes);
     }
-    for (std::size_t i = 0; i < nodes; ++i) {
-      Append(static_cast<char>(frame.Saw(static_cast<int>(i))), &bytes);
+    for (std::size_t i = 0; i < count; ++i) {
+      Append(static_cast<char>(i < frame.seen.size() && frame.seen[i] != 0),
+             &bytes);
     }
   }
   Append(Checksum64(bytes.data(), bytes.size()), &bytes);
   return bytes;
 }
 
-/// Bytes of a file of motions; a file that cannot be one is not read.
-///
-/// @throw InputError if the size is not the one that its head states.
 std::string ReadMotionBytes(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path + ": cannot be opened");
-  std::string head(kMagicBytes + 8, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  const Version* version = VersionOf(head);
-  if (version == nullptr) {
-    throw InputError(path + ": begins with " + Quoted(head.substr(0, 8)) +
-                     ": expected '" + kMagic +
-                     "' or an older version of it; a newer one needs its "
-                     "programs");
-  }
-  ByteReader reader(head, kMagicBytes);
-  const auto frames = reader.Read<std::uint32_t>();
-  const auto nodes = reader.Read<std::uint32_t>();
-  const std::uintmax_t expected =
-      head.size() + frames * version->BytesOfFrame(nodes) +
-      (version->has_checksum ? sizeof(std::uint64_t) : 0);
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size != expected) {
-    throw InputError(path + ": " + std::to_string(size) + " bytes: expected " +
-                     std::to_string(expected) + " for " +
-                     std::to_string(frames) + " frames of " +
-                     std::to_string(nodes) + " nodes");
-  }
-  std::string bytes(expected, '\0');
-  stream.seekg(0);
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!stream) throw InputError(path + ": cannot be read to its end");
-  return bytes;
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  return std::move(bytes).str();
 }
 
-/// @throw InputError unless the last eight bytes are the checksum of all before
-///     them, or there is none.
-void CheckSum(const std::string& path, const std::string& bytes) {
-  if (!VersionOf(bytes)->has_checksum) return;
-  const std::size_t end = bytes.size() - sizeof(std::uint64_t);
-  if (ByteReader(bytes, end).Read<std::uint64_t>() ==
-      Checksum64(bytes.data(), end)) {
-    return;
+/// @throw InputError if there is none.
+const Version& ExpectVersion(const std::string& path,
+                             const std::string& bytes) {
+  const Version* version = VersionOf(bytes);
+  if (version != nullptr) return *version;
+  throw InputError(path + ": begins with " + Quoted(bytes.substr(0, 8)) +
+                   ": expected '" + kMagic +
+                   "' or an older version of it; a newer one needs its "
+                   "programs");
+}
+
+/// Where the checksum begins, or the file ends.
+///
+/// @throw InputError unless the checksum is that of all bytes before it.
+std::size_t EndOfFrames(const std::string& path, const Version& version,
+                        const std::string& bytes) {
+  if (!version.has_checksum) return bytes.size();
+  if (bytes.size() >= kMagicBytes + sizeof(std::uint64_t)) {
+    const std::size_t end = bytes.size() - sizeof(std::uint64_t);
+    if (ByteReader(path, bytes, end, bytes.size()).Read<std::uint64_t>() ==
+        Checksum64(bytes.data(), end)) {
+      return end;
+    }
   }
   throw InputError(path +
-                   ": is damaged: its checksum does not fit its content");
+                   ": is truncated or damaged: its checksum does not "
+                   "fit its " +
+                   std::to_string(bytes.size()) + " bytes");
 }
 
 /// Whether a motion can be one: finite, and its matrix a rotation as far as
@@ -188,21 +204,72 @@ void CheckFrame(const std::string& path, const FrameMotions& frame,
   }
 }
 
-FrameMotions ReadFrame(std::uint32_t nodes, bool has_seen, ByteReader* reader) {
+/// The ranges of a frame, none if they are all nodes.
+std::vector<NodeRange> ReadRanges(const std::string& path, std::uint32_t nodes,
+                                  ByteReader* reader) {
+  const auto count = reader->Read<std::uint32_t>();
+  reader->Expect<std::uint64_t>(count);
+  if (count == 0) throw InputError(path + ": a frame of no nodes");
+  std::vector<NodeRange> ranges;
+  std::uint32_t last = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto begin = reader->Read<std::uint32_t>();
+    const auto end = reader->Read<std::uint32_t>();
+    if (begin < last || end < begin || end > nodes) {
+      throw InputError(path + ": nodes " + std::to_string(begin) + " to " +
+                       std::to_string(end) + ": expected ascending ones of " +
+                       std::to_string(nodes));
+    }
+    last = end;
+    ranges.push_back({static_cast<int>(begin), static_cast<int>(end)});
+  }
+  const bool are_all = count == 1 && ranges[0].begin == 0 && last == nodes;
+  return are_all ? std::vector<NodeRange>() : ranges;
+}
+
+FrameMotions ReadFrame(const std::string& path, const Version& version,
+                       std::uint32_t nodes, ByteReader* reader) {
   FrameMotions frame;
   frame.frame = reader->Read<std::int32_t>();
   frame.tracked = reader->Read<std::int32_t>() != 0;
-  frame.motions.reserve(nodes);
-  for (std::uint32_t i = 0; i < nodes; ++i) {
+  if (version.has_ranges) frame.ranges = ReadRanges(path, nodes, reader);
+  std::size_t count = frame.ranges.empty() ? nodes : 0;
+  for (const NodeRange& range : frame.ranges) count += range.end - range.begin;
+  reader->Expect<StoredMotion>(count);
+  frame.motions.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
     frame.motions.push_back(Restore(reader->Read<StoredMotion>()));
   }
-  for (std::uint32_t i = 0; has_seen && i < nodes; ++i) {
+  for (std::size_t i = 0; version.has_seen && i < count; ++i) {
     frame.seen.push_back(reader->Read<char>());
   }
   return frame;
 }
 
 }  // namespace
+
+int FrameMotions::IndexOf(int node) const {
+  if (ranges.empty()) {
+    return node < static_cast<int>(motions.size()) ? node : -1;
+  }
+  int before = 0;
+  for (const NodeRange& range : ranges) {
+    if (node < range.begin) return -1;
+    if (node < range.end) return before + node - range.begin;
+    before += range.end - range.begin;
+  }
+  return -1;
+}
+
+void FrameMotions::SpreadTo(std::vector<NodeMotion>* all) const {
+  auto from = motions.begin();
+  const std::vector<NodeRange> of_all = {{0, static_cast<int>(motions.size())}};
+  for (const NodeRange& range : ranges.empty() ? of_all : ranges) {
+    const auto count = range.end - range.begin;
+    std::copy_n(from, count, all->begin() + range.begin);
+    from += count;
+  }
+}
 
 const FrameMotions* MotionHistory::Find(int frame) const {
   const auto found = std::lower_bound(
@@ -211,23 +278,31 @@ const FrameMotions* MotionHistory::Find(int frame) const {
   return found != frames.end() && found->frame == frame ? &*found : nullptr;
 }
 
-void WriteMotions(const std::string& path, const MotionHistory& history) {
-  const std::string bytes = BytesOf(history);
+void WriteMotions(const std::string& path, const MotionHistory& history,
+                  int nodes) {
+  const std::string bytes = BytesOf(history, nodes);
   WriteFileAtomically(path, [&](std::ostream& out) { out << bytes; });
 }
 
-MotionHistory ReadMotions(const std::string& path) {
+MotionHistory ReadMotions(const std::string& path, int* nodes) {
   const std::string bytes = ReadMotionBytes(path);
-  CheckSum(path, bytes);
-  ByteReader reader(bytes, kMagicBytes);
+  const Version& version = ExpectVersion(path, bytes);
+  ByteReader reader(path, bytes, kMagicBytes,
+                    EndOfFrames(path, version, bytes));
   const auto frames = reader.Read<std::uint32_t>();
-  const auto nodes = reader.Read<std::uint32_t>();
+  const auto count = reader.Read<std::uint32_t>();
   MotionHistory history;
   for (std::uint32_t i = 0; i < frames; ++i) {
-    FrameMotions frame = ReadFrame(nodes, VersionOf(bytes)->has_seen, &reader);
+    FrameMotions frame = ReadFrame(path, version, count, &reader);
     CheckFrame(path, frame, history);
     history.frames.push_back(std::move(frame));
   }
+  if (reader.left() > 0) {
+    throw InputError(path + ": " + std::to_string(reader.left()) +
+                     " bytes too many for " + std::to_string(frames) +
+                     " frames of " + std::to_string(count) + " nodes");
+  }
+  if (nodes != nullptr) *nodes = static_cast<int>(count);
   return history;
 }
 

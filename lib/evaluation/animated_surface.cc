@@ -52,7 +52,8 @@ bool AnimatedSurface::EndsBetween(int before, int frame) const {
 
 WarpField AnimatedSurface::WarpAt(int frame) const {
   DeformationGraph graph = surface_.graph;
-  graph.motions = surface_.motions.Find(frame)->motions;
+  graph.motions.resize(graph.size());
+  surface_.motions.Find(frame)->SpreadTo(&graph.motions);
   return WarpField(graph);
 }
 

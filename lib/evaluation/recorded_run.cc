@@ -171,14 +171,25 @@ void CheckVertices(const std::string& path, const TriangleMesh& mesh) {
   }
 }
 
-void CheckMotions(const std::string& path, const RecordedSurface& surface) {
-  const std::size_t nodes = surface.graph.positions.size();
-  if (nodes == 0) throw InputError(path + ": graph.json has no node");
+/// `nodes`: of which motions.bin tells.
+void CheckMotions(const std::string& path, const RecordedSurface& surface,
+                  int nodes) {
+  const DeformationGraph& graph = surface.graph;
+  if (graph.size() == 0) throw InputError(path + ": graph.json has no node");
+  if (nodes != graph.size() && !surface.motions.frames.empty()) {
+    throw InputError(path + ": motions.bin has " + std::to_string(nodes) +
+                     " nodes: expected those of graph.json, " +
+                     std::to_string(graph.size()));
+  }
   for (const FrameMotions& frame : surface.motions.frames) {
-    if (frame.motions.size() == nodes) continue;
-    throw InputError(
-        path + ": motions.bin has " + std::to_string(frame.motions.size()) +
-        " nodes: expected those of graph.json, " + std::to_string(nodes));
+    if (frame.ranges.empty()) continue;  // It has all.
+    for (int i = 0; i < nodes; ++i) {
+      if (!graph.IsInUse(i, frame.frame) || frame.IndexOf(i) >= 0) continue;
+      throw InputError(path + ": motions.bin has no motion of node " +
+                       std::to_string(i) + " in frame " +
+                       std::to_string(frame.frame) +
+                       ": expected one, as graph.json has it in use");
+    }
   }
 }
 
@@ -219,8 +230,9 @@ RecordedSurface ReadRecordedSurface(const std::string& folder) {
   CheckVertices((path / "mesh.ply").string(), surface.mesh);
   surface.graph =
       ReadGraph((path / "graph.json").string(), &surface.neighbors_per_point);
-  surface.motions = ReadMotions((path / "motions.bin").string());
-  CheckMotions(folder, surface);
+  int nodes = 0;
+  surface.motions = ReadMotions((path / "motions.bin").string(), &nodes);
+  CheckMotions(folder, surface, nodes);
   CheckVolume((path / "tsdf.vdb").string());
   return surface;
 }

@@ -145,8 +145,8 @@ void TakeMotions(const RecordedSurface& recorded, const PartOfSurface& part,
         index >= part.end_frame || absences.count({recorded.id, index}) > 0) {
       continue;
     }
-    moved.motions.assign(motions->motions.begin() + part.begin,
-                         motions->motions.begin() + part.end);
+    const auto first = motions->motions.begin() + motions->IndexOf(part.begin);
+    moved.motions.assign(first, first + (part.end - part.begin));
     ApplyRigidMotion(frames[place].space_from_camera, &moved);
     surface->moments.push_back({place, index, motions->tracked, moved.motions});
   }

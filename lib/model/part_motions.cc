@@ -37,8 +37,9 @@ PartMotions MotionsInWorld(const SurfaceModel& model, std::size_t index,
     const Rigid3d& pose = world_from_camera.at(frame.frame);
     motions.indices.push_back(frame.frame);
     auto& states = motions.states.emplace_back();
+    const int ahead = part.node - frame.IndexOf(part.node);
     for (int i = part.node; i < end; ++i) {
-      const NodeMotion& motion = frame.motions[i];
+      const NodeMotion& motion = frame.motions[i - ahead];
       states.push_back(
           {pose * ApplyNode(graph.positions[i], motion, centers[i]),
            pose.linear() * motion.rotation, !frame.Saw(i)});
@@ -149,12 +150,12 @@ void StoreMotions(const PartMotions& motions,
     }
     const Rigid3d camera_from_world =
         world_from_camera.at(frame.frame).inverse();
+    const int first = frame.IndexOf(motions.first_node);
     for (int i = 0; i < motions.nodes(); ++i) {
       const PartMotions::State& state = motions.states[f][i];
       if (!state.hidden) continue;
-      const int node = motions.first_node + i;
-      const Eigen::Vector3d& g = model->graph.positions[node];
-      NodeMotion& motion = frame.motions[node];
+      const Eigen::Vector3d& g = model->graph.positions[motions.first_node + i];
+      NodeMotion& motion = frame.motions[first + i];
       motion.rotation =
           Orthonormalized(camera_from_world.linear() * state.rotation);
       motion.translation = camera_from_world * state.place - g -

@@ -62,18 +62,22 @@ void AppendGraph(const SurfaceModel& model, double shift,
   }
 }
 
-/// Motions of a model in a frame, or in the nearest one that it has, for nodes
-/// that were moved by `shift` along x.
-std::vector<NodeMotion> MotionsAt(const SurfaceModel& model, int frame,
-                                  double shift) {
-  const std::vector<FrameMotions>& frames = model.history.frames;
-  auto found = std::lower_bound(
-      frames.begin(), frames.end(), frame,
-      [](const FrameMotions& item, int index) { return item.frame < index; });
-  if (found == frames.end()) --found;
-  std::vector<NodeMotion> motions = found->motions;
-  for (NodeMotion& motion : motions) motion.translation.x() -= shift;
-  return motions;
+/// Takes the motions of a model in a frame of its own, behind those of the
+/// parts before: its nodes begin at `first` and were moved by `shift` along x.
+void AppendMotions(const FrameMotions& own, int first, double shift,
+                   FrameMotions* all) {
+  const int count = static_cast<int>(own.motions.size());
+  if (!all->ranges.empty() && all->ranges.back().end == first) {
+    all->ranges.back().end += count;
+  } else {
+    all->ranges.push_back({first, first + count});
+  }
+  for (NodeMotion motion : own.motions) {
+    motion.translation.x() -= shift;
+    all->motions.push_back(motion);
+  }
+  all->seen.insert(all->seen.end(), own.seen.begin(), own.seen.end());
+  all->seen.resize(all->motions.size(), false);
 }
 
 /// All frames of some models, and whether the surface was tracked in them.
@@ -211,20 +215,17 @@ SurfaceModel JoinModels(std::vector<SurfaceModel> models) {
     AppendGraph(model, shifts.back(), &joined.graph);
   }
   joined.graph.parts.back().end_frame = ModelPart::kNoEnd;
+  joined.graph.motions.resize(joined.graph.size());
   for (const auto& [index, tracked] : FramesOf(models)) {
-    FrameMotions all{index, tracked, {}, {}};
+    FrameMotions all{index, tracked, {}, {}, {}};
     for (std::size_t i = 0; i < models.size(); ++i) {
-      const auto motions = MotionsAt(models[i], index, shifts[i]);
-      all.motions.insert(all.motions.end(), motions.begin(), motions.end());
       const FrameMotions* own = models[i].history.Find(index);
-      if (own != nullptr) {
-        all.seen.insert(all.seen.end(), own->seen.begin(), own->seen.end());
-      }
-      all.seen.resize(all.motions.size(), false);
+      if (own == nullptr) continue;
+      AppendMotions(*own, joined.graph.parts[i].node, shifts[i], &all);
     }
+    all.SpreadTo(&joined.graph.motions);
     joined.history.frames.push_back(std::move(all));
   }
-  joined.graph.motions = joined.history.frames.back().motions;
   return joined;
 }
 

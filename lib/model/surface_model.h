@@ -14,7 +14,7 @@ namespace splitfusion {
 /// What is kept of a surface: its shape, and how it moved.
 struct SurfaceModel {
   TriangleMesh mesh;       ///< Canonical frame, metres.
-  DeformationGraph graph;  ///< Its motions are those of the last frame.
+  DeformationGraph graph;  ///< Its motions are the last ones.
   MotionHistory history;   ///< Motions of all its frames.
 };
 
@@ -42,8 +42,8 @@ SurfacePart PartOf(const TriangleMesh& mesh,
 /// the others, which were refuted or replaced (Surface::Reanchor), in the
 /// frames of their histories, see DeformationGraph::parts. Their canonical
 /// frames are laid beside one another along x, a metre apart, so that Eq. 3
-/// finds the nodes of one part only. In other frames their nodes keep the
-/// nearest motion that they had.
+/// finds the nodes of one part only. In other frames their nodes have no
+/// motion; those of the graph are the last ones that they had.
 SurfaceModel JoinModels(std::vector<SurfaceModel> models);
 
 }  // namespace splitfusion

@@ -140,11 +140,13 @@ Values Motions(const SceneSurface& surface) {
   const std::size_t count = nodes * surface.motions.size();
   Values values(7 * count);
   std::vector<Eigen::Vector4d> before(nodes, Eigen::Vector4d::Zero());
+  // Nodes that are not in use in a frame stay as they were.
+  std::vector<NodeMotion> motions(nodes);
   std::size_t at = 0;
   for (const FrameMotions* frame : surface.motions) {
+    frame->SpreadTo(&motions);
     for (std::size_t n = 0; n < nodes; ++n, ++at) {
-      Eigen::Vector4d turn =
-          Eigen::Quaterniond(frame->motions[n].rotation).coeffs();
+      Eigen::Vector4d turn = Eigen::Quaterniond(motions[n].rotation).coeffs();
       // Of the two that are the same rotation, the one like the last.
       if (turn.dot(before[n]) < 0) turn = -turn;
       before[n] = turn;
@@ -153,7 +155,7 @@ Values Motions(const SceneSurface& surface) {
       }
       for (int c = 0; c < 3; ++c) {
         values[(4 + c) * count + at] =
-            InUnits(frame->motions[n].translation[c], kUnit);
+            InUnits(motions[n].translation[c], kUnit);
       }
     }
   }

@@ -51,7 +51,7 @@ void AddDeviations(const TriangleMesh& mesh, const std::vector<double>& sigma,
   for (int n = 0; n < graph.size(); ++n) {
     if (!graph.IsInUse(n, motions.frame)) continue;
     const Eigen::Vector3d place =
-        ApplyNode(graph.positions[n], motions.motions[n], graph.positions[n]);
+        ApplyNode(graph.positions[n], motions.Of(n), graph.positions[n]);
     float distance = 0;
     const int vertex = nearest.Find(place.cast<float>(), -1, &distance);
     if (distance < graph.node_spacing) row[n] = InSteps(sigma[vertex]);

@@ -87,7 +87,10 @@ BestViewColors::BestViewColors(int surface, const SurfaceModel& model,
       skinning_(SkinningOfAll(model, neighbors_per_point)),
       vertices_(model.mesh.vertices.size()),
       graph_(model.graph),
-      placed_(model.mesh.vertices.size()) {}
+      placed_(model.mesh.vertices.size()),
+      in_use_(model.mesh.vertices.size(), true) {
+  graph_.motions.resize(graph_.size());
+}
 
 int BestViewColors::NodeOf(std::size_t vertex) const {
   const Skinning& skinning = SkinningOf(vertex);
@@ -99,9 +102,11 @@ int BestViewColors::NodeOf(std::size_t vertex) const {
 void BestViewColors::Place(int frame) {
   motions_ = model_.history.Find(frame);
   if (motions_ == nullptr) return;
-  graph_.motions = motions_->motions;
+  motions_->SpreadTo(&graph_.motions);
   const WarpField warp(graph_);
   ForEachVertex(placed_.size(), [&](std::size_t i) {
+    in_use_[i] = graph_.IsInUse(NodeOf(i), frame);
+    if (!IsInUse(i)) return;
     placed_[i] = warp.WarpPoint(SkinningOf(i), model_.mesh.vertices[i]);
   });
 }
@@ -126,6 +131,10 @@ void BestViewColors::Add(const LiveView& live) {
       static_cast<float>(last_frame_ < 0 ? 0 : motions_->frame - last_frame_);
   ForEachVertex(vertices_.size(), [&](std::size_t i) {
     Vertex& vertex = vertices_[i];
+    if (!IsInUse(i)) {
+      vertex.pixel = Nowhere();
+      return;
+    }
     const Eigen::Vector3f& point = placed_[i];
     const auto pixel = live.camera.PixelOf(point);
     const Eigen::Vector2f before = vertex.pixel;

@@ -56,8 +56,13 @@ class BestViewColors {
   int surface() const { return surface_; }
   /// Motions of the frame in hand; null: the surface has none for it.
   const FrameMotions* motions() const { return motions_; }
-  /// Vertices as Place() left them, camera frame, metres.
+  /// Vertices as Place() left them, camera frame, metres; of those that are not
+  /// in use it says nothing.
   const std::vector<Eigen::Vector3f>& placed() const { return placed_; }
+  /// Whether a vertex is of a part that is in use in the frame in hand.
+  bool IsInUse(std::size_t vertex) const { return in_use_[vertex] != 0; }
+  /// Number of nodes of the surface.
+  int nodes() const { return graph_.size(); }
   /// The node that moves a vertex most.
   int NodeOf(std::size_t vertex) const;
 
@@ -84,6 +89,7 @@ class BestViewColors {
   const FrameMotions* motions_ = nullptr;  // Of the frame in hand.
   DeformationGraph graph_;                 // With these.
   std::vector<Eigen::Vector3f> placed_;    // Camera frame, metres.
+  std::vector<char> in_use_;               // By vertex, in the frame in hand.
   int last_frame_ = -1;                    // Of Vertex::pixel; -1: none.
 };
 

@@ -32,9 +32,10 @@ void AddDepthResiduals(const BestViewColors& placed, const LiveView& live,
   const FrameMotions* motions = placed.motions();
   if (motions == nullptr) return;
   const DepthNoise& noise = live.camera.noise;
-  std::vector<double> sums(motions->motions.size());
+  std::vector<double> sums(placed.nodes());
   std::vector<int> counts(sums.size());
   for (std::size_t i = 0; i < placed.placed().size(); ++i) {
+    if (!placed.IsInUse(i)) continue;
     const float z = placed.placed()[i].z();
     const auto pixel = live.camera.PixelOf(placed.placed()[i]);
     if (!pixel) continue;

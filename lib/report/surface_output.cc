@@ -15,7 +15,8 @@ TriangleMesh WarpMesh(const SurfaceModel& model,
                       const std::vector<Skinning>& skinning,
                       const FrameMotions& motions, bool whole) {
   DeformationGraph graph = model.graph;
-  graph.motions = motions.motions;
+  graph.motions.resize(graph.size());
+  motions.SpreadTo(&graph.motions);
   const WarpField warp(graph);
   TriangleMesh mesh = model.mesh;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -58,7 +59,7 @@ StretchedArea WriteSurface(const RunPaths& paths, const Surface& surface,
   surface.volume().Write(folder + "/tsdf.vdb");
   const int neighbors = surface.graph_options().neighbors_per_point;
   WriteGraph(folder + "/graph.json", model.graph, neighbors);
-  WriteMotions(folder + "/motions.bin", model.history);
+  WriteMotions(folder + "/motions.bin", model.history, model.graph.size());
   if (surface.is_ray_cast()) return {};
   return WriteWarpedMeshes(paths, surface.id(), surface.label(), model,
                            neighbors, warped);

@@ -17,7 +17,7 @@ void WriteFiles(const std::string& folder, const RecordedSurface& surface) {
   WritePly(folder + "/mesh.ply", surface.mesh);
   WriteGraph(folder + "/graph.json", surface.graph,
              surface.neighbors_per_point);
-  WriteMotions(folder + "/motions.bin", surface.motions);
+  WriteMotions(folder + "/motions.bin", surface.motions, surface.graph.size());
   std::ofstream(folder + "/tsdf.vdb") << std::string(" BDV\0\0\0\0", 8);
 }
 

@@ -39,7 +39,7 @@ void LeadAway(const std::string& folder) {
     if (frame.frame < kLedAway) continue;
     for (NodeMotion& motion : frame.motions) motion.translation.x() += 0.5;
   }
-  WriteMotions(folder + "/motions.bin", surface.motions);
+  WriteMotions(folder + "/motions.bin", surface.motions, surface.graph.size());
   // It is no longer the run that its marker describes.
   std::filesystem::remove(std::filesystem::path(folder) / "../../run.json");
   const AnimatedSurface animated(surface);
