@@ -29,16 +29,17 @@ std::string SpoolFolder() {
 
 }  // namespace
 
-SpoolFile::SpoolFile() {
-  std::string path = SpoolFolder() + "/splitfusion-XXXXXX";
-  descriptor_ = mkstemp(path.data());
-  if (descriptor_ < 0) FailSpooling("made");
-  unlink(path.c_str());
+SpoolFile::~SpoolFile() {
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
-SpoolFile::~SpoolFile() { close(descriptor_); }
-
 std::uint64_t SpoolFile::Append(const void* data, std::size_t bytes) {
+  if (descriptor_ < 0) {
+    std::string path = SpoolFolder() + "/splitfusion-XXXXXX";
+    descriptor_ = mkstemp(path.data());
+    if (descriptor_ < 0) FailSpooling("made");
+    unlink(path.c_str());
+  }
   const std::uint64_t offset = end_;
   Write(offset, data, bytes);
   end_ += bytes;

@@ -7,18 +7,19 @@
 namespace splitfusion {
 
 /// A file without a name for what would fill the memory: in the folder of
-/// temporary files (TMPDIR), gone with its object or the program.
+/// temporary files (TMPDIR), made when it is first written, gone with its
+/// object or the program.
 class SpoolFile {
  public:
-  /// @throw InputError if none can be made there.
-  SpoolFile();
+  SpoolFile() = default;
   ~SpoolFile();
   SpoolFile(const SpoolFile&) = delete;
   SpoolFile& operator=(const SpoolFile&) = delete;
 
   /// Writes bytes behind all others; returns where they begin.
   ///
-  /// @throw InputError if they cannot be written, as on a full disk.
+  /// @throw InputError if the file cannot be made, or they cannot be written,
+  ///     as on a full disk.
   std::uint64_t Append(const void* data, std::size_t bytes);
 
   /// Writes bytes in place of others.
@@ -32,7 +33,7 @@ class SpoolFile {
   void Read(std::uint64_t offset, void* data, std::size_t bytes) const;
 
  private:
-  int descriptor_;
+  int descriptor_ = -1;  // None yet.
   std::uint64_t end_ = 0;
 };
 

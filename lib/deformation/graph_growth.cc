@@ -183,6 +183,14 @@ void GraphOptions::List(OptionList* list) {
                "longer and nothing is seen before it; 0 = nowhere.");
   list->Number("refuted_share", &refuted_share, Range::Share(), "",
                "Such parts wait until they are this share of the nodes.");
+  list->Number("confirmed_frames", &confirmed_frames, Range::AtLeast(0),
+               "frames",
+               "A node of a deforming surface is confirmed once it was seen in "
+               "so many frames.");
+  list->Number("unconfirmed_frames", &unconfirmed_frames, Range::AtLeast(1),
+               "frames",
+               "A node that is not confirmed is forgotten once the surface "
+               "itself has hidden it in so many frames on end.");
 }
 
 void GraphOptions::Check() const { CheckOptions(*this); }

@@ -39,6 +39,12 @@ struct GraphOptions {
   /// Refuted nodes wait until they are so many, as a part of the graph's;
   /// meanwhile they are carved as the rest.
   double refuted_share = 0.02;
+  /// A node is confirmed once it was seen in so many frames; 0: at once.
+  int confirmed_frames = 10;
+  /// What a node carries that is not confirmed is forgotten, too, once the
+  /// surface itself has hidden it in so many frames on end, see
+  /// UnconfirmedNodes.
+  int unconfirmed_frames = 20;
 
   /// Names, ranges and meaning of all fields.
   void List(OptionList* list);

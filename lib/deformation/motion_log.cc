@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "splitfusion/lib/base/chosen.h"
-#include "splitfusion/lib/base/spool_file.h"
 #include "splitfusion/lib/deformation/node_births.h"
 
 namespace splitfusion {
@@ -178,7 +177,6 @@ void MotionLog::ForgetNeedlessBirths() {
 
 /// Moves the first frames that lie in memory to the file.
 void MotionLog::Spool() {
-  if (file_ == nullptr) file_ = std::make_shared<SpoolFile>();
   Block block{{}, numbers_, nodes_ever_, changes_};
   while (!recent_.empty() && block.frames.size() < kBlockFrames) {
     const FrameMotions& frame = recent_.front();
@@ -206,8 +204,7 @@ void MotionLog::Replace(int i, const std::vector<NodeMotion>& motions) {
 
 MotionLog MotionLog::Part(const std::vector<char>& nodes,
                           int first_frame) const {
-  MotionLog part(memory_);
-  part.file_ = file_;
+  MotionLog part(file_, memory_);
   for (const std::shared_ptr<const Block>& block : blocks_) {
     const auto begin = std::find_if(
         block->frames.begin(), block->frames.end(),
@@ -241,7 +238,7 @@ MotionLog MotionLog::Part(const std::vector<char>& nodes,
 }
 
 void MotionLog::Finish() {
-  while (file_ != nullptr && !recent_.empty()) Spool();
+  while (!recent_.empty()) Spool();
 }
 
 }  // namespace splitfusion

@@ -6,15 +6,16 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "splitfusion/lib/base/spool_file.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/deformation/node_change.h"
 
 namespace splitfusion {
 
 class NodeBirths;
-class SpoolFile;
 
 /// Motions of a surface that is being tracked, by ascending frame, while its
 /// graph grows: as MotionHistory, nodes that are born later have motions in the
@@ -24,8 +25,11 @@ class SpoolFile;
 /// cost of a new node grows with the frames.
 class MotionLog {
  public:
-  /// `memory`: bytes that frames may take before they go to the file.
-  explicit MotionLog(std::size_t memory = kMemory) : memory_(memory) {}
+  /// `file`: where frames go; `memory`: bytes that they may take before.
+  explicit MotionLog(
+      std::shared_ptr<SpoolFile> file = std::make_shared<SpoolFile>(),
+      std::size_t memory = kMemory)
+      : memory_(memory), file_(std::move(file)) {}
 
   /// Number of frames.
   int size() const { return spooled_ + static_cast<int>(recent_.size()); }
@@ -69,7 +73,7 @@ class MotionLog {
   /// @throw InputError as Append().
   MotionLog Part(const std::vector<char>& nodes, int first_frame) const;
 
-  /// Says that it is complete: if there is a file all of it goes there.
+  /// Says that it is complete: all of it goes to the file.
   ///
   /// @throw InputError as Append().
   void Finish();
@@ -78,7 +82,7 @@ class MotionLog {
   template <typename Archive>
   void Serialize(Archive* archive) {
     const std::uint64_t count = archive->Count(size(), 1);
-    if constexpr (Archive::kReads) *this = MotionLog(memory_);
+    if constexpr (Archive::kReads) *this = MotionLog(file_, memory_);
     for (std::uint64_t i = 0; i < count; ++i) {
       FrameMotions frame;
       if constexpr (!Archive::kReads) frame = At(static_cast<int>(i));

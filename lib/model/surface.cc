@@ -32,6 +32,16 @@ double MedianDepth(const LiveView& live, int id) {
   return Median(std::move(depths));
 }
 
+/// Where the nodes are under their motions, camera frame.
+std::vector<Eigen::Vector3f> NodePlaces(const DeformationGraph& graph) {
+  std::vector<Eigen::Vector3f> places;
+  for (int i = 0; i < graph.size(); ++i) {
+    places.push_back(
+        (graph.positions[i] + graph.motions[i].translation).cast<float>());
+  }
+  return places;
+}
+
 /// A live point as near as this to a vertex is on the mesh, voxels.
 constexpr double kModelledVoxels = 3;
 
@@ -111,18 +121,17 @@ bool Surface::Reanchor(const LiveView& live) {
   if (!anew.Initialize(live)) return false;
   FinishMesh();
   history_.Finish();
+  retired_.Add(mesh_, graph_, std::move(history_));
+  anew.spool_ = spool_;
+  anew.history_ = MotionLog(spool_);
   anew.retired_ = std::move(retired_);
-  anew.retired_.push_back(
-      {std::move(mesh_), std::move(graph_), std::move(history_)});
   *this = std::move(anew);
   return true;
 }
 
 SurfaceModel Surface::Model() const {
   std::vector<SurfaceModel> models;
-  for (const RetiredModel& model : retired_) {
-    models.push_back({model.mesh, model.graph, model.history.All()});
-  }
+  for (int i = 0; i < retired_.size(); ++i) models.push_back(retired_.At(i));
   // One that has no frame yet has nothing to show.
   if (!history_.empty() || models.empty()) {
     models.push_back({mesh_, graph_, history_.All()});
@@ -177,6 +186,7 @@ int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
   std::vector<Eigen::Vector3f> warped = WarpedVertices();
   refuted_.Look(live, id_, warped, mesh_skinning(), graph_.size(),
                 options_.tsdf.truncation);
+  unconfirmed_.Look(live, id_, NodePlaces(graph_), options_.tsdf.truncation);
   const int forgotten = ForgetRefuted();
   if (forgotten > 0) warped = WarpedVertices();
   const CanonicalPlaces found = FindCanonicalPlaces(
@@ -191,9 +201,19 @@ int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
   return forgotten;
 }
 
+/// Of every node whether what it carries is refuted, or was never confirmed.
+std::vector<char> Surface::NodesToForget() const {
+  std::vector<char> nodes = unconfirmed_.Nodes(
+      graph_options_.confirmed_frames, graph_options_.unconfirmed_frames);
+  if (graph_options_.refuted_frames == 0) return nodes;
+  const std::vector<char> refuted =
+      refuted_.Nodes(graph_options_.refuted_frames);
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] |= refuted[i];
+  return nodes;
+}
+
 int Surface::ForgetRefuted() {
-  if (graph_options_.refuted_frames == 0) return 0;
-  const std::vector<char> nodes = refuted_.Nodes(graph_options_.refuted_frames);
+  const std::vector<char> nodes = NodesToForget();
   const auto count =
       static_cast<int>(std::count(nodes.begin(), nodes.end(), true));
   if (count == 0 || count < graph_options_.refuted_share * graph_.size()) {
@@ -205,12 +225,12 @@ int Surface::ForgetRefuted() {
     SurfacePart part = PartOf(shown, mesh_skinning_.supports(), graph_, nodes);
     MotionLog motions = history_.Part(part.nodes, part.first_frame);
     if (!motions.empty()) {
-      retired_.push_back(
-          {std::move(part.mesh), std::move(part.graph), std::move(motions)});
+      retired_.Add(part.mesh, part.graph, std::move(motions));
     }
   }
   ForgetVoxels(graph_, *index_, nodes, &volume_);
   refuted_.Forget(nodes);
+  unconfirmed_.Forget(nodes);
   UpdateMesh();
   return count;
 }
@@ -255,6 +275,7 @@ void Surface::UpdateGraphOverMesh(bool retie) {
                   &graph_record_, &history_, retie);
   if (change.none() && !retie) return;
   refuted_.Follow(change);
+  unconfirmed_.Follow(change);
   auto updated = std::make_unique<SkinningIndex>(
       graph_, graph_options_.neighbors_per_point);
   const SkinningChange skinning_change(*index_, *updated, graph_, change);
@@ -268,11 +289,9 @@ std::vector<char> Surface::SeenNodes(const LiveView& live) const {
   if (kind_ == SurfaceKind::kRigid) return seen;
   const DepthTolerance<float> tolerance{
       static_cast<float>(options_.tsdf.truncation)};
-  for (int i = 0; i < graph_.size(); ++i) {
-    const Eigen::Vector3d place =
-        graph_.positions[i] + graph_.motions[i].translation;
-    seen[i] = LookAt(live, id_, place.cast<float>(), tolerance) ==
-              DepthState::kObserved;
+  const std::vector<Eigen::Vector3f> places = NodePlaces(graph_);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    seen[i] = LookAt(live, id_, places[i], tolerance) == DepthState::kObserved;
   }
   return seen;
 }

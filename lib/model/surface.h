@@ -13,7 +13,9 @@
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 #include "splitfusion/lib/model/refuted_parts.h"
+#include "splitfusion/lib/model/retired_models.h"
 #include "splitfusion/lib/model/surface_model.h"
+#include "splitfusion/lib/model/unconfirmed_nodes.h"
 #include "splitfusion/lib/segmentation/label_table.h"
 #include "splitfusion/lib/tsdf/mesh_extractor.h"
 #include "splitfusion/lib/tsdf/tsdf_volume.h"
@@ -171,20 +173,9 @@ class Surface {
   void Serialize(Archive* archive);
 
  private:
-  /// A model, or a part of one, that is used no more.
-  struct RetiredModel {
-    TriangleMesh mesh;
-    DeformationGraph graph;
-    MotionLog history;
-
-    template <typename Archive>
-    void Serialize(Archive* archive) {
-      (*archive)(mesh, graph, history);
-    }
-  };
-
   void PlaceGraph(const LiveView& live);
   int FuseWarped(const LiveView& live, DepthObservation* observation);
+  std::vector<char> NodesToForget() const;
   int ForgetRefuted();
   void UpdateMeshAndGraph(bool retie);
   void UpdateGraphOverMesh(bool retie);
@@ -206,10 +197,13 @@ class Surface {
   MeshExtractor mesh_extractor_;
   TriangleMesh mesh_;
   MeshSkinning mesh_skinning_;
-  MotionLog history_;
+  // What is not needed before the end lies there.
+  std::shared_ptr<SpoolFile> spool_ = std::make_shared<SpoolFile>();
+  MotionLog history_{spool_};
   RefutedParts refuted_;
+  UnconfirmedNodes unconfirmed_;
   // What it was before Reanchor(), and parts that were refuted.
-  std::vector<RetiredModel> retired_;
+  RetiredModels retired_{spool_};
 };
 
 }  // namespace splitfusion

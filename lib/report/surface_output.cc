@@ -15,7 +15,8 @@ TriangleMesh WarpMesh(const SurfaceModel& model,
                       const std::vector<Skinning>& skinning,
                       const FrameMotions& motions, bool whole) {
   DeformationGraph graph = model.graph;
-  graph.motions.resize(graph.size());
+  // What is not in use stays in the canonical frame.
+  graph.motions.assign(graph.size(), NodeMotion());
   motions.SpreadTo(&graph.motions);
   const WarpField warp(graph);
   TriangleMesh mesh = model.mesh;

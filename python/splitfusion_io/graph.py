@@ -12,7 +12,7 @@ from .errors import PathLike, RunError, refuse
 from .files import read_bytes, read_json
 
 #: Newest version of `motions.bin`, the last two bytes of its first eight.
-MOTIONS_VERSION = 3
+MOTIONS_VERSION = 4
 
 
 @dataclass
@@ -130,25 +130,51 @@ def read_graph(path: PathLike) -> Graph:
 
 @dataclass
 class Motions:
-    """Motions of all nodes in all frames that a surface has: `motions.bin`.
+    """Motions of the nodes of a surface in all frames that it has:
+    `motions.bin`.
 
     A point p (canonical) of node i at g_i goes to R_i (p - g_i) + t_i + g_i in
-    the camera frame.
+    the camera frame. A frame has motions of those nodes that are in use in it.
     """
 
     frames: np.ndarray  #: F int32, frame indices, ascending.
     tracked: np.ndarray  #: F bool; False: the motion was carried over.
-    rotations: np.ndarray  #: F x N x 3 x 3 float32.
-    translations: np.ndarray  #: F x N x 3 float32, metres.
-    #: F x N bool: live depth showed the surface at the node; None: not told, in
-    #: files of version 1 and 2.
-    seen: Optional[np.ndarray] = None
+    node_count: int  #: Nodes of the graph, N.
+    #: F arrays, M x 12 float32: rotation row by row, then translation, metres.
+    moved: list[np.ndarray]
+    nodes: list[np.ndarray]  #: F arrays, M int: the nodes of these, ascending.
+    #: F arrays, M bool: live depth showed the surface at the node; None: not
+    #: told, in files of version 1 and 2.
+    seen: Optional[list[np.ndarray]] = None
 
     def index(self, frame: int) -> Optional[int]:
         """Row of a frame; None: the surface has no motion in it."""
         row = int(np.searchsorted(self.frames, frame))
         found = row < len(self.frames) and self.frames[row] == frame
         return row if found else None
+
+    def at(self, row: int) -> tuple[np.ndarray, np.ndarray]:
+        """Rotations (N x 3 x 3) and translations (N x 3, metres) in a row,
+        float32; nodes that are not in use are not moved."""
+        all_nodes = np.zeros((self.node_count, 12), np.float32)
+        all_nodes[:, [0, 4, 8]] = 1
+        all_nodes[self.nodes[row]] = self.moved[row]
+        return all_nodes[:, :9].reshape(-1, 3, 3), all_nodes[:, 9:]
+
+    @property
+    def rotations(self) -> np.ndarray:
+        """Those of all rows, F x N x 3 x 3: much memory where a surface has
+        many parts."""
+        none = np.zeros((0, self.node_count, 3, 3), np.float32)
+        rows = [self.at(row)[0] for row in range(len(self.frames))]
+        return np.stack(rows) if rows else none
+
+    @property
+    def translations(self) -> np.ndarray:
+        """Those of all rows, F x N x 3, metres."""
+        none = np.zeros((0, self.node_count, 3), np.float32)
+        rows = [self.at(row)[1] for row in range(len(self.frames))]
+        return np.stack(rows) if rows else none
 
 
 def _motions_version(path: PathLike, data: bytes) -> int:
@@ -184,17 +210,51 @@ def _check_sum(path: PathLike, data: bytes) -> None:
 
 
 def _check_motions(path: PathLike, motions: Motions) -> None:
-    frames, r = motions.frames, motions.rotations
+    frames = motions.frames
     if len(frames) and (frames[0] < 0 or (np.diff(frames) <= 0).any()):
         refuse(f"{path}: frames", frames, "ascending, from 0")
-    with np.errstate(invalid="ignore", over="ignore"):
-        away = np.abs(np.swapaxes(r, -1, -2) @ r - np.eye(3, dtype=r.dtype))
-    good = (away < 1e-2).all() and np.isfinite(motions.translations).all()
-    if not good or not (np.linalg.det(r) > 0).all():
-        raise RunError(
-            f"{path}: is damaged: expected a rotation and a translation of "
-            "every node"
-        )
+    for moved in motions.moved:
+        r = moved[:, :9].reshape(-1, 3, 3)
+        with np.errstate(invalid="ignore", over="ignore"):
+            away = np.abs(np.swapaxes(r, -1, -2) @ r - np.eye(3, dtype=r.dtype))
+        good = (away < 1e-2).all() and np.isfinite(moved[:, 9:]).all()
+        if not good or not (np.linalg.det(r) > 0).all():
+            raise RunError(
+                f"{path}: is damaged: expected a rotation and a translation of "
+                "every node"
+            )
+
+
+class _Bytes:
+    """Takes arrays off the content of a file, one after the other."""
+
+    def __init__(self, path: PathLike, data: bytes, begin: int, end: int):
+        self.path, self.data, self.next, self.end = path, data, begin, end
+
+    def take(self, kind: str, count: int) -> np.ndarray:
+        size = count * np.dtype(kind).itemsize
+        if size > self.end - self.next:
+            refuse(
+                self.path,
+                f"{len(self.data)} bytes",
+                f"{size - self.end + self.next} more: it is truncated",
+            )
+        taken = np.frombuffer(self.data, kind, count, offset=self.next)
+        self.next += size
+        return taken
+
+    def take_nodes(self, version: int, nodes: int) -> np.ndarray:
+        """The nodes of which a frame has motions."""
+        if version < 4:
+            return np.arange(nodes)
+        count = int(self.take("<u4", 1)[0])
+        ranges = self.take("<u4", 2 * count).reshape(count, 2).astype(int)
+        flat = ranges.reshape(-1)
+        if (np.diff(flat) < 0).any() or (flat > nodes).any() or count == 0:
+            refuse(
+                f"{self.path}: nodes", ranges.tolist(), f"ascending, to {nodes}"
+            )
+        return np.concatenate([np.arange(a, b) for a, b in ranges])
 
 
 def read_motions(path: PathLike) -> Motions:
@@ -202,32 +262,31 @@ def read_motions(path: PathLike) -> Motions:
     checksum is looked at where the module `xxhash` is installed."""
     data = read_bytes(path)
     version = _motions_version(path, data)
-    count, nodes = (int(n) for n in np.frombuffer(data, "<u4", 2, offset=8))
-    fields: list[tuple] = [
-        ("frame", "<i4"),
-        ("tracked", "<i4"),
-        ("motion", "<f4", (nodes, 12)),
-    ]
-    if version >= 3:
-        fields.append(("seen", "u1", (nodes,)))
-    size = 8 + nodes * (49 if version >= 3 else 48)
-    expected = 16 + count * size + (8 if version >= 2 else 0)
-    if len(data) != expected:
+    if version >= 2:
+        _check_sum(path, data)
+    content = _Bytes(path, data, 8, len(data) - (8 if version >= 2 else 0))
+    count, nodes = (int(n) for n in content.take("<u4", 2))
+    frames, tracked = np.zeros(0, np.int32), np.zeros(0, bool)
+    motions = Motions(
+        frames, tracked, nodes, [], [], [] if version >= 3 else None
+    )
+    heads = []
+    for _ in range(count):
+        heads.append(content.take("<i4", 2))
+        which = content.take_nodes(version, nodes)
+        motions.nodes.append(which)
+        moved = content.take("<f4", 12 * len(which))
+        motions.moved.append(moved.reshape(-1, 12))
+        if motions.seen is not None:
+            motions.seen.append(content.take("u1", len(which)) != 0)
+    if content.next != content.end:
         refuse(
             path,
             f"{len(data)} bytes",
-            f"{expected} for {count} frames of {nodes} nodes",
+            f"{content.end - content.next} less for {count} frames",
         )
-    if version >= 2:
-        _check_sum(path, data)
-    rows = np.frombuffer(data, np.dtype(fields), count, offset=16)
-    moved = rows["motion"]
-    motions = Motions(
-        rows["frame"].copy(),
-        rows["tracked"] != 0,
-        moved[:, :, :9].reshape(count, nodes, 3, 3),
-        moved[:, :, 9:].copy(),
-        rows["seen"] != 0 if version >= 3 else None,
-    )
+    if heads:
+        motions.frames = np.stack(heads)[:, 0].astype(np.int32)
+        motions.tracked = np.stack(heads)[:, 1] != 0
     _check_motions(path, motions)
     return motions

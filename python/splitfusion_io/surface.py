@@ -68,12 +68,10 @@ class Surface:
     def motions(self) -> Motions:
         """Motions of all nodes, camera from canonical."""
         motions = read_motions(self.folder / "motions.bin")
-        if len(motions.frames) and motions.rotations.shape[1] != len(
-            self.graph
-        ):
+        if len(motions.frames) and motions.node_count != len(self.graph):
             refuse(
                 self.folder / "motions.bin",
-                f"{motions.rotations.shape[1]} nodes",
+                f"{motions.node_count} nodes",
                 f"those of graph.json, {len(self.graph)}",
             )
         return motions
@@ -94,11 +92,7 @@ class Surface:
 
     def field(self, frame: int) -> WarpField:
         """The warp of a frame. RunError if the surface has no motion in it."""
-        row = self._row(frame)
-        motions = self.motions
-        return WarpField(
-            self.graph, motions.rotations[row], motions.translations[row]
-        )
+        return WarpField(self.graph, *self.motions.at(self._row(frame)))
 
     def warp(self, points: np.ndarray, frame: int) -> np.ndarray:
         """Points (P x 3, canonical, metres) in a frame: P x 3 float32, camera
@@ -111,9 +105,7 @@ class Surface:
 
     def nodes_at(self, frame: int) -> np.ndarray:
         """Places of the nodes in a frame, N x 3, camera frame, metres."""
-        return (
-            self.graph.positions + self.motions.translations[self._row(frame)]
-        )
+        return self.graph.positions + self.motions.at(self._row(frame))[1]
 
     def mesh_at(self, frame: int) -> Mesh:
         """The mesh in a frame as in `warped/FRAME.ply`: all vertices, and the

@@ -216,6 +216,7 @@ class Binary(Files):
         data = b"SFMOTN%02d" % version + struct.pack("<II", 2, 1)
         for frame, y in ((3, 0.0), (5, 1.0)):
             data += struct.pack("<ii", frame, frame == 3)
+            data += struct.pack("<3I", 1, 0, 1) if version >= 4 else b""
             data += struct.pack("<12f", 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, y, 0)
             data += b"\1" if version >= 3 else b""
         if version < 2:
@@ -227,7 +228,7 @@ class Binary(Files):
         return data + struct.pack("<Q", xxhash.xxh3_64_intdigest(data))
 
     def test_motions_of_all_versions(self):
-        for version in (1, 2, 3):
+        for version in (1, 2, 3, 4):
             path = self.write("motions.bin", self.motions(version))
             motions = sf.read_motions(path)
             self.assertEqual(list(motions.frames), [3, 5])
@@ -235,13 +236,33 @@ class Binary(Files):
             self.assertEqual(motions.translations[1, 0, 1], 1)
             self.assertEqual(motions.seen is None, version < 3)
             self.assertEqual((motions.index(5), motions.index(4)), (1, None))
-        newer = self.write("m.bin", b"SFMOTN04" + bytes(20))
-        self.refused("m.bin: version: 4: expected 1..3", sf.read_motions, newer)
-        short = self.write("m.bin", self.motions(3)[:-1])
+        newer = self.write("m.bin", b"SFMOTN05" + bytes(20))
+        self.refused("m.bin: version: 5: expected 1..4", sf.read_motions, newer)
+        short = self.write("m.bin", self.motions(1)[:-1])
         self.refused("bytes: expected", sf.read_motions, short)
         turned = bytearray(self.motions(1))
         turned[24:28] = struct.pack("<f", 2.0)
         self.refused("is damaged", sf.read_motions, self.write("m.bin", turned))
+
+    def test_motions_of_nodes_in_use(self):
+        """Two nodes; the first frame has that of the second one alone."""
+        data = b"SFMOTN04" + struct.pack("<II", 2, 2)
+        moved = struct.pack("<12f", 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0)
+        data += struct.pack("<ii3I", 3, 1, 1, 1, 2) + moved + b"\1"
+        data += struct.pack("<ii3I", 5, 1, 1, 0, 2) + 2 * moved + b"\1\0"
+        try:
+            import xxhash
+
+            data += struct.pack("<Q", xxhash.xxh3_64_intdigest(data))
+        except ImportError:
+            data += bytes(8)
+        motions = sf.read_motions(self.write("motions.bin", data))
+        np.testing.assert_array_equal(motions.nodes[0], [1])
+        np.testing.assert_array_equal(motions.seen[0], [True])
+        np.testing.assert_array_equal(
+            motions.translations[:, :, 1], [[0, 3], [3, 3]]
+        )
+        np.testing.assert_array_equal(motions.at(0)[0][0], np.eye(3))
 
     def test_bad_graphs_name_the_field(self):
         good = {

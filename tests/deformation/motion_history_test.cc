@@ -39,7 +39,7 @@ TEST(MotionHistory, FindsFrames) {
 
 TEST(Motions, RoundTripInFloat) {
   const TemporaryFolder folder;
-  WriteMotions(folder / "motions.bin", TwoFrames());
+  WriteMotions(folder / "motions.bin", TwoFrames(), 2);
   const MotionHistory read = ReadMotions(folder / "motions.bin");
   ASSERT_EQ(read.frames.size(), 2u);
   EXPECT_EQ(read.frames[0].frame, 3);
@@ -56,28 +56,94 @@ TEST(Motions, RoundTripInFloat) {
 
 TEST(Motions, HaveTheDocumentedLayout) {
   const TemporaryFolder folder;
-  WriteMotions(folder / "motions.bin", TwoFrames());
+  WriteMotions(folder / "motions.bin", TwoFrames(), 2);
   const std::string bytes = folder.Read("motions.bin");
-  ASSERT_EQ(bytes.size(), 8 + 8 + 2 * (8 + 2 * 49) + 8);
-  EXPECT_EQ(bytes.substr(0, 8), "SFMOTN03");
+  ASSERT_EQ(bytes.size(), 8 + 8 + 2 * (12 + 8 + 2 * 49) + 8);
+  EXPECT_EQ(bytes.substr(0, 8), "SFMOTN04");
+  EXPECT_EQ(bytes.substr(24, 12), std::string("\1\0\0\0\0\0\0\0\2\0\0\0", 12));
   std::uint64_t checksum = 0;
   bytes.copy(reinterpret_cast<char*>(&checksum), 8, bytes.size() - 8);
   EXPECT_EQ(checksum, Checksum64(bytes.data(), bytes.size() - 8));
   float translation_y = 0;
-  bytes.copy(reinterpret_cast<char*>(&translation_y), 4, 24 + 10 * 4);
+  bytes.copy(reinterpret_cast<char*>(&translation_y), 4, 36 + 10 * 4);
   EXPECT_EQ(translation_y, 2);
-  EXPECT_EQ(bytes.substr(24 + 2 * 48, 2), std::string("\0\1", 2));
+  EXPECT_EQ(bytes.substr(36 + 2 * 48, 2), std::string("\0\1", 2));
+}
+
+/// Three nodes, of which the first two are in use in frame 3, the last one,
+/// too, in frame 4, and that alone in frame 5.
+MotionHistory SomeInUse() {
+  MotionHistory history;
+  history.frames.push_back(
+      {3, true, {Motion(0.1), Motion(0.2)}, {0, 1}, {{0, 2}}});
+  history.frames.push_back(
+      {4, true, {Motion(0.3), Motion(0.4), Motion(0.5)}, {1, 0, 1}});
+  history.frames.push_back({5, true, {Motion(0.6)}, {1}, {{2, 3}}});
+  return history;
+}
+
+TEST(FrameMotions, KnowOfWhichNodesTheyAre) {
+  const MotionHistory history = SomeInUse();
+  const FrameMotions& last = history.frames[2];
+  EXPECT_EQ(last.IndexOf(1), -1);
+  EXPECT_EQ(last.IndexOf(2), 0);
+  EXPECT_EQ(last.IndexOf(3), -1);
+  EXPECT_FALSE(last.Saw(0));
+  EXPECT_TRUE(last.Saw(2));
+  EXPECT_EQ(last.Of(2).translation, Motion(0.6).translation);
+  EXPECT_EQ(history.frames[1].IndexOf(2), 2);
+  EXPECT_EQ(history.frames[1].IndexOf(3), -1);
+  const FrameMotions apart = {
+      0, true, {Motion(1), Motion(2)}, {}, {{1, 2}, {4, 5}}};
+  EXPECT_EQ(apart.IndexOf(4), 1);
+  EXPECT_EQ(apart.IndexOf(3), -1);
+  std::vector<NodeMotion> all(5);
+  apart.SpreadTo(&all);
+  EXPECT_TRUE(all[0].rotation.isIdentity(0));
+  EXPECT_EQ(all[1].rotation, Motion(1).rotation);
+  EXPECT_TRUE(all[2].rotation.isIdentity(0));
+  EXPECT_EQ(all[4].rotation, Motion(2).rotation);
+}
+
+TEST(Motions, OfNodesInUseSurviveWritingAndReading) {
+  const TemporaryFolder folder;
+  WriteMotions(folder / "motions.bin", SomeInUse(), 3);
+  int nodes = 0;
+  const MotionHistory read = ReadMotions(folder / "motions.bin", &nodes);
+  EXPECT_EQ(nodes, 3);
+  ASSERT_EQ(read.frames.size(), 3u);
+  EXPECT_EQ(read.frames[0].motions.size(), 2u);
+  EXPECT_EQ(read.frames[0].IndexOf(2), -1);
+  EXPECT_TRUE(read.frames[1].ranges.empty());
+  EXPECT_TRUE(read.frames[2].Saw(2));
+  EXPECT_TRUE(
+      read.frames[2].Of(2).rotation.isApprox(Motion(0.6).rotation, 1e-6));
+  EXPECT_EQ(folder.Read("motions.bin").size(),
+            16 + 3 * 20 + (2 + 3 + 1) * 49 + 8);
+}
+
+TEST(Motions, OfNodesThatCannotBeAreRefused) {
+  const TemporaryFolder folder;
+  for (const std::vector<NodeRange>& ranges :
+       std::vector<std::vector<NodeRange>>{
+           {{1, 3}}, {{1, 2}, {0, 1}}, {{0, 1}, {0, 1}}}) {
+    MotionHistory history = TwoFrames();
+    history.frames[0].ranges = ranges;
+    WriteMotions(folder / "motions.bin", history, 2);
+    ExpectInputError([&] { ReadMotions(folder / "motions.bin"); },
+                     "expected ascending ones of 2");
+  }
 }
 
 TEST(Motions, OfNoFrameAreFine) {
   const TemporaryFolder folder;
-  WriteMotions(folder / "motions.bin", {});
+  WriteMotions(folder / "motions.bin", {}, 0);
   EXPECT_TRUE(ReadMotions(folder / "motions.bin").frames.empty());
 }
 
 TEST(Motions, RejectTruncatedAndForeignFiles) {
   const TemporaryFolder folder;
-  WriteMotions(folder / "motions.bin", TwoFrames());
+  WriteMotions(folder / "motions.bin", TwoFrames(), 2);
   const std::string bytes = folder.Read("motions.bin");
   for (const std::string& broken :
        {bytes.substr(0, bytes.size() - 1), bytes + "x", bytes.substr(0, 11),
@@ -90,7 +156,7 @@ TEST(Motions, RejectTruncatedAndForeignFiles) {
 
 TEST(Motions, EveryChangedByteIsNoticed) {
   const TemporaryFolder folder;
-  WriteMotions(folder / "motions.bin", TwoFrames());
+  WriteMotions(folder / "motions.bin", TwoFrames(), 2);
   const std::string bytes = folder.Read("motions.bin");
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     for (const int change : {0x01, 0x03, 0x80, 0xff}) {
@@ -103,36 +169,34 @@ TEST(Motions, EveryChangedByteIsNoticed) {
   }
 }
 
-/// The file of TwoFrames() as version 01 had it: without a checksum, and
-/// without what was seen.
-std::string FirstVersion(std::string bytes) {
+/// The file of TwoFrames() as an older version had it: without ranges of nodes;
+/// in 01 and 02 without what was seen, in 01 without a checksum.
+std::string OfVersion(char version, std::string bytes) {
+  constexpr std::size_t kHead = 16, kIndex = 8, kRanges = 12, kSeen = 2;
+  constexpr std::size_t kFrame = kIndex + kRanges + 2 * 48 + kSeen;
   bytes.resize(bytes.size() - 8);
-  constexpr std::size_t kSeen = 2, kFrame = 8 + 2 * 48, kHead = 16;
-  bytes.erase(kHead + 2 * kFrame + kSeen, kSeen);
-  bytes.erase(kHead + kFrame, kSeen);
-  bytes[7] = '1';
-  return bytes;
-}
-
-/// As version 02 had it: with a checksum.
-std::string SecondVersion(const std::string& bytes) {
-  std::string second = FirstVersion(bytes);
-  second[7] = '2';
-  const std::uint64_t checksum = Checksum64(second.data(), second.size());
-  return second.append(reinterpret_cast<const char*>(&checksum), 8);
+  for (const std::size_t frame : {kHead + kFrame, kHead}) {
+    if (version < '3') bytes.erase(frame + kFrame - kSeen, kSeen);
+    bytes.erase(frame + kIndex, kRanges);
+  }
+  bytes[7] = version;
+  if (version == '1') return bytes;
+  const std::uint64_t checksum = Checksum64(bytes.data(), bytes.size());
+  return bytes.append(reinterpret_cast<const char*>(&checksum), 8);
 }
 
 TEST(Motions, OfOlderVersionsAreRead) {
   const TemporaryFolder folder;
-  WriteMotions(folder / "motions.bin", TwoFrames());
+  WriteMotions(folder / "motions.bin", TwoFrames(), 2);
   const std::string bytes = folder.Read("motions.bin");
-  for (const std::string& old : {FirstVersion(bytes), SecondVersion(bytes)}) {
-    folder.Write("old.bin", old);
+  for (const char version : {'1', '2', '3'}) {
+    folder.Write("old.bin", OfVersion(version, bytes));
     const MotionHistory read = ReadMotions(folder / "old.bin");
     ASSERT_EQ(read.frames.size(), 2u);
     EXPECT_TRUE(read.frames[1].motions[1].rotation.isApprox(
         Motion(0.4).rotation, 1e-6));
-    EXPECT_TRUE(read.frames[0].seen.empty());
+    EXPECT_EQ(read.frames[0].seen,
+              version < '3' ? std::vector<char>() : std::vector<char>({0, 1}));
   }
 }
 
@@ -140,9 +204,9 @@ TEST(Motions, ThatCannotBeAreRefused) {
   const TemporaryFolder folder;
   const auto refuses = [&](const MotionHistory& history,
                            const std::string& part) {
-    WriteMotions(folder / "motions.bin", history);
+    WriteMotions(folder / "motions.bin", history, 2);
     ExpectInputError([&] { ReadMotions(folder / "motions.bin"); }, part);
-    folder.Write("old.bin", FirstVersion(folder.Read("motions.bin")));
+    folder.Write("old.bin", OfVersion('1', folder.Read("motions.bin")));
     ExpectInputError([&] { ReadMotions(folder / "old.bin"); }, part);
   };
   MotionHistory history = TwoFrames();
@@ -161,9 +225,9 @@ TEST(Motions, ThatCannotBeAreRefused) {
 
 TEST(Motions, OfMoreFramesThanTheFileHoldsAreNotAllocated) {
   const TemporaryFolder folder;
-  folder.Write("huge.bin", "SFMOTN03" + std::string(8, '\xff'));
+  folder.Write("huge.bin", "SFMOTN01" + std::string(16, '\xff'));
   ExpectInputError([&] { ReadMotions(folder / "huge.bin"); },
-                   "huge.bin: 16 bytes: expected ");
+                   " bytes early: expected a complete file");
 }
 
 }  // namespace

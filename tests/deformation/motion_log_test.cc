@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <memory>
 #include <sstream>
 #include <vector>
 
@@ -25,7 +26,7 @@ constexpr int kFrames = 90;
 /// A plate that is tracked while it slides under the camera: every few frames
 /// nodes are born at one end and forgotten at the other.
 struct SlidingPlate {
-  explicit SlidingPlate(std::size_t memory) : log(memory) {
+  explicit SlidingPlate(std::size_t memory) : log(std::make_shared<SpoolFile>(), memory) {
     graph = CoverWithNodes(mesh, 0.04);
     for (int frame = 0; frame < kFrames; ++frame) Track(frame);
   }
@@ -135,7 +136,7 @@ TEST(MotionLog, IsRestoredAndGoesOnAsBefore) {
   writer(plate.log);
   writer.Flush();
   SlidingPlate other(kLittle);
-  other.log = MotionLog(kLittle);
+  other.log = MotionLog(std::make_shared<SpoolFile>(), kLittle);
   ArchiveReader reader(&stream, stream.str().size(), "state");
   reader(other.log);
   ExpectSame(other.log.All(), plate.log.All());
@@ -147,7 +148,7 @@ TEST(MotionLog, IsRestoredAndGoesOnAsBefore) {
 }
 
 TEST(MotionLog, MotionsOfARigidSurfaceCanBeReplaced) {
-  MotionLog log(/*memory=*/1000);
+  MotionLog log(std::make_shared<SpoolFile>(), /*memory=*/1000);
   NodeMotion motion;
   for (int frame = 0; frame < 60; ++frame) {
     motion.translation.x() = frame;

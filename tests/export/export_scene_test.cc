@@ -122,10 +122,11 @@ TEST_F(ExportSceneTest, LeavesStretchedTrianglesOut) {
   plate_.curvature_step = 0;
   plate_.WriteRun(folder_ / "run");
   const std::string folder = folder_ / "run/surfaces/001_thin_plate";
-  MotionHistory motions = ReadMotions(folder + "/motions.bin");
+  int nodes = 0;
+  MotionHistory motions = ReadMotions(folder + "/motions.bin", &nodes);
   // One node is torn away, in one frame.
   motions.frames[5].motions[4].translation.z() -= 0.3;
-  WriteMotions(folder + "/motions.bin", motions);
+  WriteMotions(folder + "/motions.bin", motions, nodes);
   const ExportScene scene = ReadExportScene(folder_ / "run", options_);
   const ExportSurface& cut = scene.surfaces[1];
   EXPECT_GT(cut.stretched_triangles, 0);

@@ -78,7 +78,7 @@ constexpr double kHalfMetre = 0.5;
 double FarthestNode(const SurfaceModel& a, const SurfaceModel& b) {
   double farthest = 0;
   for (std::size_t f = 0; f < a.history.frames.size(); ++f) {
-    for (int i = 0; i < a.graph.size(); ++i) {
+    for (std::size_t i = 0; i < a.history.frames[f].motions.size(); ++i) {
       const NodeMotion& one = a.history.frames[f].motions[i];
       const NodeMotion& other = b.history.frames[f].motions[i];
       farthest =

@@ -86,7 +86,7 @@ void WriteSurface(const fs::path& folder, const TriangleMesh& mesh,
   fs::create_directories(folder);
   WritePly((folder / "mesh.ply").string(), mesh);
   WriteGraph((folder / "graph.json").string(), graph, 6);
-  WriteMotions((folder / "motions.bin").string(), history);
+  WriteMotions((folder / "motions.bin").string(), history, graph.size());
   // What an OpenVDB file begins with: nothing here looks further.
   std::ofstream(folder / "tsdf.vdb") << std::string(" BDV\0\0\0\0", 8);
 }

@@ -1,0 +1,60 @@
+#ifndef SPLITFUSION_LIB_MODEL_RETIRED_MODELS_H_
+#define SPLITFUSION_LIB_MODEL_RETIRED_MODELS_H_
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "splitfusion/lib/base/spool_file.h"
+#include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/deformation/motion_log.h"
+#include "splitfusion/lib/geometry/triangle_mesh.h"
+#include "splitfusion/lib/model/surface_model.h"
+
+namespace splitfusion {
+
+/// Models of a surface, and parts of them, that are used no more, in the order
+/// in which they ended. Nothing asks for them before the end: they lie in a
+/// temporary file, as there may be thousands of them in a long recording.
+class RetiredModels {
+ public:
+  /// `file`: where they go.
+  explicit RetiredModels(std::shared_ptr<SpoolFile> file)
+      : file_(std::move(file)) {}
+
+  /// Their number.
+  int size() const { return static_cast<int>(models_.size()); }
+
+  /// Takes one more; `history` is complete, see MotionLog::Finish().
+  ///
+  /// @throw InputError if the file cannot be written.
+  void Add(const TriangleMesh& mesh, const DeformationGraph& graph,
+           MotionLog history);
+
+  /// The model i, 0..size() - 1.
+  ///
+  /// @throw InputError if the file cannot be read.
+  SurfaceModel At(int i) const;
+
+  /// Saves or restores them, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive);
+
+ private:
+  /// Where a model is.
+  struct Place {
+    std::uint64_t offset = 0;  // Of mesh and graph.
+    std::uint64_t bytes = 0;   // Of both.
+    MotionLog history;
+  };
+
+  void Read(const Place& place, TriangleMesh* mesh,
+            DeformationGraph* graph) const;
+
+  std::shared_ptr<SpoolFile> file_;
+  std::vector<Place> models_;
+};
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_MODEL_RETIRED_MODELS_H_
