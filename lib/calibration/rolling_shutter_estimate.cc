@@ -308,8 +308,12 @@ std::optional<double> Solve(const Moments& moments,
 bool RollingShutterEstimate::IsNeeded() const {
   constexpr double kLeastShare = 0.15;
   constexpr int kLeastPairs = 4;
-  return pairs >= kLeastPairs && seconds > 3 * error &&
-         seconds > kLeastShare * interval && seconds - 3 * error < interval;
+  // What moves by itself pulls several pairs alike, which their scatter does
+  // not show.
+  constexpr double kCertain = 5;
+  return pairs >= kLeastPairs && seconds > kCertain * error &&
+         seconds > kLeastShare * interval &&
+         seconds - kCertain * error < interval;
 }
 
 std::string RollingShutterEstimate::Text() const {
