@@ -14,6 +14,7 @@
 #include "splitfusion/lib/report/run_paths.h"
 #include "splitfusion/lib/segmentation/class_names.h"
 #include "splitfusion/lib/segmentation/mask_folder_segmenter.h"
+#include "splitfusion/lib/segmentation/mask_folder_writer.h"
 #include "splitfusion/lib/segmentation/recording_segmenter.h"
 #include "splitfusion/lib/segmentation/undistorting_segmenter.h"
 
@@ -32,12 +33,22 @@ namespace {
 
 using Classes = std::set<std::string>;
 
-/// The network of the flags; its masks are kept in the run directory.
-std::shared_ptr<Segmenter> MakeNetworkSegmenter(const std::string& run) {
+/// Lens of the colour files.
+const LensDistortion& ColorLens(const ImageFolderReader& reader) {
+  const Calibration& calibration = reader.calibration();
+  return calibration.color ? calibration.color_lens : calibration.lens;
+}
+
+/// The network of the flags; its masks are kept in the run directory. They are
+/// of images without lens distortion.
+std::shared_ptr<Segmenter> MakeNetworkSegmenter(const ImageFolderReader& reader,
+                                                const std::string& run) {
   CheckOption(FLAGS_masks == "auto", "masks", FLAGS_masks,
               "auto with --model (or an empty --model= to read masks)");
   std::unique_ptr<NetworkSegmenter> network = NetworkFromFlags();
-  const std::map<std::string, std::string> settings = network->Settings();
+  std::map<std::string, std::string> settings = network->Settings();
+  const LensDistortion& lens = ColorLens(reader);
+  if (!lens.IsNone()) settings[kLensSetting] = lens.Text();
   return std::make_shared<RecordingSegmenter>(
       std::move(network), RunPaths(run).Detections(), settings);
 }
@@ -89,6 +100,22 @@ void WarnOfUnknownClasses(const std::string& groups, const LabelTable& table,
                << unknown;
 }
 
+/// Masks of a folder for images without lens distortion.
+std::shared_ptr<Segmenter> WithoutLens(
+    const ImageFolderReader& reader, const std::string& folder,
+    const std::shared_ptr<Segmenter>& segmenter) {
+  const auto undistortion = reader.color_undistortion();
+  if (!undistortion) return segmenter;
+  const std::string made = LensOfMasks(folder);
+  const std::string lens = ColorLens(reader).Text();
+  if (made == lens) return segmenter;
+  if (!made.empty()) {
+    throw InputError(folder + ": masks of images without the lens '" + made +
+                     "': expected that of the sequence, '" + lens + "'");
+  }
+  return std::make_shared<UndistortingSegmenter>(segmenter, undistortion);
+}
+
 std::shared_ptr<Segmenter> MakeFolderSegmenter(const ImageFolderReader& reader,
                                                const std::string& folder,
                                                const PipelineOptions& options) {
@@ -111,9 +138,7 @@ std::shared_ptr<Segmenter> MakeFolderSegmenter(const ImageFolderReader& reader,
     WarnOfUnknownClasses(options.split.merge_touching, LabelsFromFlags(),
                          known);
   }
-  const auto undistortion = reader.color_undistortion();
-  if (!undistortion) return segmenter;
-  return std::make_shared<UndistortingSegmenter>(segmenter, undistortion);
+  return WithoutLens(reader, folder, segmenter);
 }
 
 }  // namespace
@@ -133,7 +158,7 @@ std::shared_ptr<Segmenter> SegmenterFromFlags(const ImageFolderReader& reader,
               "mask_identities", FLAGS_mask_identities,
               "nothing, as it has no effect but with masks from files");
   if (HasNetworkFlags()) {
-    std::shared_ptr<Segmenter> segmenter = MakeNetworkSegmenter(run);
+    std::shared_ptr<Segmenter> segmenter = MakeNetworkSegmenter(reader, run);
     Classes known;
     if (!FLAGS_class_names.empty()) {
       for (const auto& name : ReadClassNames(FLAGS_class_names)) {

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "splitfusion/lib/geometry/stretched_area.h"
@@ -15,6 +16,17 @@ WarpField WarpOf(const ExportSurface& surface, const ExportMoment& moment) {
   graph.positions = surface.graph.positions;
   graph.motions = moment.motions;
   return WarpField(graph);
+}
+
+/// Leaves those of `values` that are `kept`; an empty list stays empty.
+template <typename Values>
+void Keep(const std::vector<std::uint8_t>& kept, Values* values) {
+  if (values->empty()) return;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i] != 0) (*values)[count++] = (*values)[i];
+  }
+  values->resize(count);
 }
 
 }  // namespace
@@ -70,6 +82,26 @@ void LeaveStretchedOut(ExportSurface* surface) {
   }
   surface->stretched_triangles =
       static_cast<int>(before - surface->mesh.triangles.size());
+}
+
+void LeaveUnusedOut(ExportSurface* surface) {
+  TriangleMesh& mesh = surface->mesh;
+  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) used[t[k]] = 1;
+  }
+  std::vector<int> place(used.size(), 0);
+  for (std::size_t i = 1; i < used.size(); ++i) {
+    place[i] = place[i - 1] + used[i - 1];
+  }
+  for (Eigen::Vector3i& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) t[k] = place[t[k]];
+  }
+  Keep(used, &mesh.vertices);
+  Keep(used, &mesh.normals);
+  Keep(used, &mesh.colors);
+  Keep(used, &surface->source);
+  Keep(used, &surface->skinning);
 }
 
 }  // namespace splitfusion

@@ -50,6 +50,10 @@ struct ExportSurface {
 /// frames (CutStretched()); counts them.
 void LeaveStretchedOut(ExportSurface* surface);
 
+/// Takes those vertices out of a surface that no triangle uses; the others stay
+/// in their order.
+void LeaveUnusedOut(ExportSurface* surface);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_EXPORT_EXPORT_SURFACE_H_

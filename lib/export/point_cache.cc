@@ -41,7 +41,11 @@ void WriteCache(const PointCacheFiles& files, const ExportSurface& surface) {
 std::vector<PointCacheFiles> WritePointCaches(const std::string& stem,
                                               const ExportScene& scene) {
   std::vector<PointCacheFiles> written;
-  for (const ExportSurface& surface : scene.surfaces) {
+  for (ExportSurface surface : scene.surfaces) {
+    // Blender's import of OBJ leaves them out, and takes no cache that has
+    // them.
+    LeaveUnusedOut(&surface);
+    if (surface.mesh.vertices.empty()) continue;
     const std::string path = stem + "_" + surface.name;
     const std::size_t first = surface.moments.front().place;
     const std::size_t last = surface.moments.back().place;

@@ -21,7 +21,8 @@ struct PointCacheFiles {
 /// (PC2), `STEM_SURFACE.pc2`, and the mesh that it moves beside,
 /// `STEM_SURFACE.obj`; of surfaces that stand still the mesh alone. A cache has
 /// all frames from the first to the last in which the surface is there; where
-/// it is not between these, its last ones stay.
+/// it is not between these, its last ones stay. Vertices that no triangle uses
+/// are in neither.
 ///
 /// `stem`: path without its extension. `scene`: with ExportOptions::y_up.
 /// @throw InputError if a file cannot be written.

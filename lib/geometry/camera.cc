@@ -6,6 +6,7 @@
 #include <string>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/geometry/focal_length.h"
 
 namespace splitfusion {
 namespace {
@@ -41,10 +42,8 @@ PinholeCamera PinholeCamera::Subsampled(int stride) const {
 void PinholeCamera::Check() const {
   CheckOption(width > 0, "camera width", width, "a positive size in pixels");
   CheckOption(height > 0, "camera height", height, "a positive size in pixels");
-  CheckOption(std::isfinite(fx) && fx > 0, "camera fx", fx,
-              "a positive focal length in pixels");
-  CheckOption(std::isfinite(fy) && fy > 0, "camera fy", fy,
-              "a positive focal length in pixels");
+  CheckFocalLength("camera fx", fx);
+  CheckFocalLength("camera fy", fy);
   CheckOption(std::isfinite(cx), "camera cx", cx, "a number in pixels");
   CheckOption(std::isfinite(cy), "camera cy", cy, "a number in pixels");
   CheckFieldOfView("x", fx, cx, width);

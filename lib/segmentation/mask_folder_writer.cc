@@ -187,6 +187,14 @@ void MaskFolderWriter::Write(const Frame& frame,
   done_.insert(frame.stem);
 }
 
+std::string LensOfMasks(const std::string& folder) {
+  const fs::path path = fs::path(folder) / kSettingsFile;
+  if (!fs::exists(path)) return "";
+  const Settings settings = ReadSettings(path);
+  const auto found = settings.find(kLensSetting);
+  return found == settings.end() ? "" : found->second;
+}
+
 void ClearMaskFolder(const std::string& folder) {
   const fs::path root(folder);
   if (!fs::exists(root / kSettingsFile)) return;

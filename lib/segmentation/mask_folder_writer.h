@@ -10,6 +10,10 @@
 
 namespace splitfusion {
 
+/// Setting of masks that were made of images without lens distortion: the
+/// LensDistortion::Text() of the lens that had been taken out of them.
+inline constexpr char kLensSetting[] = "lens";
+
 /// Writes the masks of frame after frame into a folder which
 /// MaskFolderSegmenter reads:
 ///  - `STEM.png`: label image, 16 bit, pixel = index of the detection, 0 =
@@ -53,6 +57,12 @@ class MaskFolderWriter {
   std::string folder_;
   std::set<std::string> done_;
 };
+
+/// kLensSetting of the masks of a folder; empty if they are those of images as
+/// they are, or of another program.
+///
+/// @throw InputError if the settings are broken.
+std::string LensOfMasks(const std::string& folder);
 
 /// Removes what a MaskFolderWriter left in a folder, and nothing else: images
 /// of others, or changed since, stay. A folder that none has written is left as

@@ -74,6 +74,16 @@ cv::Mat_<double> SquareMatrix(const std::string& place,
 
 using CameraJson = nlohmann::json;
 
+/// The upper left 3x3 of a matrix, rows separated by commas.
+std::string RowsText(const cv::Mat_<double>& matrix) {
+  std::ostringstream text;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) text << (j > 0 ? " " : "") << matrix(i, j);
+    if (i < 2) text << ", ";
+  }
+  return text.str();
+}
+
 /// A number of a JSON object; `otherwise` if there is none of that name.
 double JsonNumber(const std::string& path, const CameraJson& object,
                   const std::string& key, double otherwise) {
@@ -87,7 +97,9 @@ int JsonSize(const std::string& path, const CameraJson& object,
              const std::string& key) {
   constexpr double kMost = 1e6;
   const double size = JsonNumber(path, object, key, 0);
-  if (size >= 0 && size <= kMost) return static_cast<int>(size);
+  if (size >= 0 && size <= kMost && size == std::floor(size)) {
+    return static_cast<int>(size);
+  }
   std::ostringstream text;
   text << path << ": '" << key << "' = " << size
        << ": expected a size in pixels";
@@ -240,10 +252,9 @@ void SetIntrinsics(const std::string& place, const cv::Mat_<double>& matrix,
   const bool rest = matrix(0, 1) == 0 && matrix(1, 0) == 0 &&
                     matrix(2, 0) == 0 && matrix(2, 1) == 0 && matrix(2, 2) == 1;
   if (rest && camera->fx > 0 && camera->fy > 0) return;
-  throw InputError(
-      place +
-      ": expected a matrix of intrinsics, fx 0 cx, 0 fy cy, 0 0 1, "
-      "with focal lengths > 0");
+  throw InputError(place + ": '" + RowsText(matrix) +
+                   "': expected a matrix of intrinsics, fx 0 cx, 0 fy cy, "
+                   "0 0 1, with focal lengths > 0");
 }
 
 LensDistortion MakeLensDistortion(const std::string& place,
@@ -282,7 +293,16 @@ std::optional<Rigid3d> RigidMotion(const std::string& place,
   // Text files have six decimals, or fewer.
   const double off = (motion.linear() - linear).norm();
   if (off < 0.01 && linear.determinant() > 0) return motion;
-  throw InputError(place + ": expected a rigid motion, a rotation and a way");
+  throw InputError(place + ": turned by '" + RowsText(matrix) +
+                   "': expected a rigid motion, a rotation and a way");
+}
+
+Rigid3d KnownRigidMotion(const std::string& place,
+                         const cv::Mat_<double>& matrix) {
+  const std::optional<Rigid3d> motion = RigidMotion(place, matrix);
+  if (motion) return *motion;
+  throw InputError(place + ": turned by '" + RowsText(matrix) +
+                   "': expected finite numbers, those of a rigid motion");
 }
 
 Calibration ReadForeignCalibration(const std::string& path) {

@@ -41,6 +41,12 @@ LensDistortion MakeLensDistortion(const std::string& place,
 std::optional<Rigid3d> RigidMotion(const std::string& place,
                                    const cv::Mat_<double>& matrix);
 
+/// The same of what must be known, as the place of a camera on its device.
+///
+/// @throw InputError also if a number is not finite.
+Rigid3d KnownRigidMotion(const std::string& place,
+                         const cv::Mat_<double>& matrix);
+
 /// Reads intrinsics in a form of others. Where the file does not tell them,
 /// size and depth scale are 0.
 ///

@@ -8,6 +8,7 @@
 #include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/text_file.h"
+#include "splitfusion/lib/geometry/focal_length.h"
 
 namespace splitfusion {
 
@@ -24,10 +25,8 @@ ColorCamera ColorCamera::Registered(const PinholeCamera& depth_camera) {
 }
 
 void ColorCamera::Check() const {
-  CheckOption(std::isfinite(fx) && fx > 0, "fx of the colour camera", fx,
-              "a focal length > 0 in pixels");
-  CheckOption(std::isfinite(fy) && fy > 0, "fy of the colour camera", fy,
-              "a focal length > 0 in pixels");
+  CheckFocalLength("fx of the colour camera", fx);
+  CheckFocalLength("fy of the colour camera", fy);
   CheckOption(std::isfinite(cx), "cx of the colour camera", cx, "pixels");
   CheckOption(std::isfinite(cy), "cy of the colour camera", cy, "pixels");
   CheckOption((width > 0) == (height > 0) && width >= 0 && height >= 0,

@@ -42,7 +42,9 @@ class SensFormat : public SequenceFormat {
 
   std::optional<Calibration> FindCalibration(
       const std::string& sequence) const override {
-    return CalibrationOf(sequence, files_.At(sequence)->cameras());
+    return CalibrationOf(sequence + ": colour camera",
+                         sequence + ": depth camera",
+                         files_.At(sequence)->cameras());
   }
 
   Trajectory FindPoses(

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr char kDepthFolder[] = "depth";
 constexpr double kFolderDepthScale = 1000;  // Millimetres.
+constexpr std::size_t kLogBlock = 5;        // Lines.
 
 /// A folder of depth images and one of colour images.
 class FolderFormat : public SequenceFormat {
@@ -102,7 +103,7 @@ class ScanNetFormat : public FolderFormat {
     cameras.depth_intrinsic = ReadMatrix(depth);
     cameras.color_extrinsic = Extrinsic(sequence, "color");
     cameras.depth_extrinsic = Extrinsic(sequence, "depth");
-    return CalibrationOf(depth, cameras);
+    return CalibrationOf(color, depth, cameras);
   }
 
  private:
@@ -125,8 +126,7 @@ class ScanNetFormat : public FolderFormat {
                            const std::string& camera) {
     const std::string path = MatrixFile(sequence, "extrinsic", camera);
     if (path.empty()) return Rigid3d::Identity();
-    return RigidMotion(path, ReadMatrix(path, 4, 4))
-        .value_or(Rigid3d::Identity());
+    return KnownRigidMotion(path, ReadMatrix(path, 4, 4));
   }
 };
 
@@ -169,8 +169,13 @@ class RedwoodFormat : public FolderFormat {
     if (!fs::exists(log)) return FolderFormat::FindPoses(sequence, frames);
     const std::vector<AssociatedFiles> all = FindFrames(sequence);
     const std::vector<TextLine> lines = ReadTextLines(log.string());
+    if (lines.empty() || lines.size() % kLogBlock != 0) {
+      throw InputError(log.string() + ": " + std::to_string(lines.size()) +
+                       " lines: expected blocks of an index line and a 4x4 "
+                       "matrix");
+    }
     Trajectory poses;
-    for (std::size_t at = 0; at + 5 <= lines.size(); at += 5) {
+    for (std::size_t at = 0; at < lines.size(); at += kLogBlock) {
       const double index = LogNumbers(lines[at], 3)[0];
       cv::Mat_<double> matrix(4, 4);
       for (int row = 0; row < 4; ++row) {

@@ -1,6 +1,9 @@
 #include "splitfusion/lib/sequence/image_file.h"
 
+#include <zlib.h>
+
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -17,6 +20,37 @@ std::vector<std::uint8_t> ReadBytes(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(path + ": cannot be opened");
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Kind of the first chunk of a PNG that is damaged, as its checksum tells, or
+/// missing; empty if none is, and of other files. The decoder would notice, but
+/// say so in lines of its own.
+std::string DamagedChunk(const std::vector<std::uint8_t>& bytes) {
+  const std::string signature = "\x89PNG\r\n\x1a\n", end = "IEND";
+  if (bytes.size() < signature.size() ||
+      std::memcmp(bytes.data(), signature.data(), signature.size()) != 0) {
+    return "";
+  }
+  const auto number = [&](std::size_t at) {  // Most significant byte first.
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | bytes[i];
+    return value;
+  };
+  constexpr std::size_t kAround = 12;  // Format: length, kind and checksum.
+  std::size_t at = signature.size();
+  while (at + kAround <= bytes.size()) {
+    const std::size_t length = number(at);
+    if (length > bytes.size() - at - kAround) return end;
+    const std::uint8_t* content = bytes.data() + at + 4;
+    const std::string kind(content, content + 4);
+    // Chunks that images can do without are in small letters.
+    const bool needed = kind[0] >= 'A' && kind[0] <= 'Z';
+    const uLong sum = crc32(0, content, static_cast<uInt>(4 + length));
+    if (needed && sum != number(at + 8 + length)) return kind;
+    if (kind == end) return "";
+    at += kAround + length;
+  }
+  return end;
 }
 
 cv::Mat Decode(const std::string& path, int flags) {
@@ -54,6 +88,12 @@ ImageHeader HeaderOf(const cv::Mat& image) {
 
 cv::Mat DecodeImage(const std::string& path,
                     const std::vector<std::uint8_t>& bytes, int flags) {
+  const std::string damaged = DamagedChunk(bytes);
+  if (!damaged.empty()) {
+    throw InputError(path + ": " + std::to_string(bytes.size()) +
+                     " bytes of a png whose chunk " + damaged +
+                     " is damaged: expected a complete png or jpg");
+  }
   cv::Mat image;
   try {
     image = cv::imdecode(bytes, flags);

@@ -145,7 +145,11 @@ void ImageFolderReader::CompleteCalibration() {
                      ": no depth scale beside the intrinsics: expected "
                      "depth_scale as an option, units in a metre");
   }
-  calibration_.Check();
+  try {
+    calibration_.Check();
+  } catch (const InputError& error) {
+    throw InputError(folder_ + ": " + error.what());
+  }
   depth_undistortion_ = MakeUndistortion(camera, calibration_.lens);
   color_undistortion_ = depth_undistortion_;
   if (!calibration_.color) return;

@@ -1,5 +1,6 @@
 #include "splitfusion/lib/sequence/info_file.h"
 
+#include <cmath>
 #include <map>
 #include <sstream>
 #include <vector>
@@ -12,6 +13,8 @@ namespace splitfusion {
 namespace {
 
 using InfoLines = std::map<std::string, TextLine>;
+
+constexpr char kDepthShift[] = "m_depthShift";
 
 /// Lines `key = value` by key, the value as text.
 InfoLines ReadInfoLines(const std::string& path) {
@@ -44,7 +47,9 @@ int InfoSize(const std::string& path, const InfoLines& lines,
              const std::string& key) {
   constexpr double kMost = 1e5;
   const double size = InfoNumbers(path, lines, key).front();
-  if (size >= 1 && size <= kMost) return static_cast<int>(size);
+  if (size >= 1 && size <= kMost && size == std::floor(size)) {
+    return static_cast<int>(size);
+  }
   lines.at(key).Refuse("a size in pixels");
 }
 
@@ -60,21 +65,21 @@ cv::Mat_<double> InfoMatrix(const std::string& path, const InfoLines& lines,
 Rigid3d InfoExtrinsic(const std::string& path, const InfoLines& lines,
                       const std::string& key) {
   if (lines.count(key) == 0) return Rigid3d::Identity();
-  const auto motion =
-      RigidMotion(path + ": " + key, InfoMatrix(path, lines, key));
-  return motion.value_or(Rigid3d::Identity());
+  return KnownRigidMotion(path + ": " + key, InfoMatrix(path, lines, key));
 }
 
 }  // namespace
 
-Calibration CalibrationOf(const std::string& place, const TwoCameras& cameras) {
+Calibration CalibrationOf(const std::string& color_place,
+                          const std::string& depth_place,
+                          const TwoCameras& cameras) {
   Calibration result;
   result.depth_scale = cameras.depth_scale;
   result.camera.width = cameras.depth_size.width;
   result.camera.height = cameras.depth_size.height;
-  SetIntrinsics(place, cameras.depth_intrinsic, &result.camera);
+  SetIntrinsics(depth_place, cameras.depth_intrinsic, &result.camera);
   PinholeCamera color;
-  SetIntrinsics(place, cameras.color_intrinsic, &color);
+  SetIntrinsics(color_place, cameras.color_intrinsic, &color);
   ColorCamera beside = ColorCamera::Registered(color);
   beside.width = cameras.color_size.width;
   beside.height = cameras.color_size.height;
@@ -100,16 +105,19 @@ Calibration ReadInfoFile(const std::string& path) {
   TwoCameras cameras;
   cameras.color_size = size("color");
   cameras.depth_size = size("depth");
-  cameras.color_intrinsic =
-      InfoMatrix(path, lines, "m_calibrationColorIntrinsic");
-  cameras.depth_intrinsic =
-      InfoMatrix(path, lines, "m_calibrationDepthIntrinsic");
+  const std::string color = "m_calibrationColorIntrinsic";
+  const std::string depth = "m_calibrationDepthIntrinsic";
+  cameras.color_intrinsic = InfoMatrix(path, lines, color);
+  cameras.depth_intrinsic = InfoMatrix(path, lines, depth);
   cameras.color_extrinsic =
       InfoExtrinsic(path, lines, "m_calibrationColorExtrinsic");
   cameras.depth_extrinsic =
       InfoExtrinsic(path, lines, "m_calibrationDepthExtrinsic");
-  cameras.depth_scale = InfoNumbers(path, lines, "m_depthShift").front();
-  return CalibrationOf(path, cameras);
+  cameras.depth_scale = InfoNumbers(path, lines, kDepthShift).front();
+  if (!(cameras.depth_scale > 0)) {
+    lines.at(kDepthShift).Refuse("depth units in a metre, a number > 0");
+  }
+  return CalibrationOf(path + ": " + color, path + ": " + depth, cameras);
 }
 
 }  // namespace splitfusion

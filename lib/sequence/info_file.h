@@ -23,8 +23,10 @@ struct TwoCameras {
 
 /// Their calibration: that of registered images if the two are the same.
 ///
-/// @throw InputError if a matrix is none of intrinsics; `place` names it.
-Calibration CalibrationOf(const std::string& place, const TwoCameras& cameras);
+/// @throw InputError if a matrix is none of intrinsics; the places name them.
+Calibration CalibrationOf(const std::string& color_place,
+                          const std::string& depth_place,
+                          const TwoCameras& cameras);
 
 /// Reads `info.txt`: lines `m_colorWidth = 640` and so on.
 ///

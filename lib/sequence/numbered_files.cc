@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "splitfusion/lib/sequence/calibration_files.h"
 
@@ -55,16 +56,25 @@ std::map<std::int64_t, std::string> NumberedFiles(
 std::vector<AssociatedFiles> PairByNumber(
     const std::map<std::int64_t, std::string>& color,
     const std::map<std::int64_t, std::string>& depth,
+    const std::function<std::string(const std::string&)>& color_name,
     const std::function<std::string(const std::string&)>& depth_name) {
-  std::vector<AssociatedFiles> frames;
-  for (const auto& [number, color_file] : color) {
-    const double time = static_cast<double>(number) / kNumberedFramesPerSecond;
-    const auto found = depth.find(number);
-    frames.push_back({{time, color_file},
-                      {time, found == depth.end() ? depth_name(color_file)
-                                                  : found->second}});
+  std::map<std::int64_t, AssociatedFiles> frames;
+  for (const auto& [number, file] : color) {
+    frames[number].color.file = file;
+    frames[number].depth.file = depth_name(file);
   }
-  return frames;
+  for (const auto& [number, file] : depth) {
+    AssociatedFiles& frame = frames[number];
+    frame.depth.file = file;
+    if (frame.color.file.empty()) frame.color.file = color_name(file);
+  }
+  std::vector<AssociatedFiles> list;
+  for (auto& [number, frame] : frames) {
+    const double time = static_cast<double>(number) / kNumberedFramesPerSecond;
+    frame.color.timestamp = frame.depth.timestamp = time;
+    list.push_back(std::move(frame));
+  }
+  return list;
 }
 
 Trajectory ReadPoseFiles(

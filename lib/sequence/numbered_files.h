@@ -22,13 +22,14 @@ std::map<std::int64_t, std::string> NumberedFiles(
     const std::string& folder, const std::string& prefix,
     const std::vector<std::string>& endings);
 
-/// Frames of numbered colour and depth images, those of the numbers of the
-/// colour images, kNumberedFramesPerSecond. `depth_name`: what the depth image
-/// beside a colour image should be called, if there is none of its number; it
-/// makes the frame a bad one.
+/// Frames of numbered colour and depth images, kNumberedFramesPerSecond.
+/// `color_name` and `depth_name`: what the image beside one of the other kind
+/// should be called, if there is none of its number; it makes the frame a bad
+/// one.
 std::vector<AssociatedFiles> PairByNumber(
     const std::map<std::int64_t, std::string>& color,
     const std::map<std::int64_t, std::string>& depth,
+    const std::function<std::string(const std::string&)>& color_name,
     const std::function<std::string(const std::string&)>& depth_name);
 
 /// Poses of the frames whose file is there: 4x4 matrices, world from camera;

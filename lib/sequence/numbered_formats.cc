@@ -41,6 +41,7 @@ class NumberedFormat : public SequenceFormat {
     std::vector<AssociatedFiles> frames = PairByNumber(
         ColorFiles(folder),
         NumberedFiles(folder, kPrefix, {kDepth, ".depth.pgm"}),
+        [&](const std::string& depth) { return StemOf(depth) + ColorEnding(); },
         [](const std::string& color) { return StemOf(color) + kDepth; });
     if (frames.empty()) {
       throw InputError(sequence + ": 0 frames: expected " + Files());

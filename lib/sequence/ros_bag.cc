@@ -10,14 +10,18 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <map>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/number_text.h"
 #include "splitfusion/lib/sequence/calibration_files.h"
 #include "splitfusion/lib/sequence/image_file.h"
 #include "splitfusion/lib/sequence/internal/ros_bag_check.h"
@@ -104,23 +108,56 @@ cv::Mat ImageOf(const std::string& place, sensor_msgs::Image message) {
   return image;
 }
 
+/// What compressed_depth_image_transport puts before an image: metres are
+/// a / (value - b), unless the image is of millimetres.
+struct DepthConfiguration {
+  std::int32_t kind = 0;
+  float a = 0;
+  float b = 0;
+};
+
+/// Metres, HxW 32FC1, of what that package makes of 32FC1; 0: none.
+cv::Mat DepthOfInverse(const std::string& place, const cv::Mat& inverse,
+                       const DepthConfiguration& by) {
+  if (inverse.type() != CV_16UC1 || !(by.a > 0) || !std::isfinite(by.a) ||
+      !std::isfinite(by.b)) {
+    throw InputError(place + ": 32FC1; compressedDepth with " +
+                     NumberText(by.a) + " and " + NumberText(by.b) +
+                     ": expected an image of 16 bit, a number > 0 and another");
+  }
+  cv::Mat_<float> depth(inverse.size(), 0);
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 0; u < depth.cols; ++u) {
+      const float value = inverse.at<std::uint16_t>(v, u);
+      if (value > 0 && value > by.b) depth(v, u) = by.a / (value - by.b);
+    }
+  }
+  return std::move(depth);
+}
+
+cv::Mat DepthOf(const std::string& place,
+                sensor_msgs::CompressedImage message) {
+  if (message.format.find("rvl") != std::string::npos) {
+    throw InputError(place + ": '" + message.format +
+                     "': expected compressedDepth by png");
+  }
+  DepthConfiguration configuration;
+  const std::size_t size = std::min(sizeof(configuration), message.data.size());
+  std::copy_n(message.data.begin(), size,
+              reinterpret_cast<std::uint8_t*>(&configuration));
+  message.data.erase(message.data.begin(),
+                     message.data.begin() + static_cast<std::ptrdiff_t>(size));
+  const cv::Mat image = DecodeImage(place, message.data, cv::IMREAD_UNCHANGED);
+  if (message.format.rfind(encodings::TYPE_32FC1, 0) != 0) return image;
+  return DepthOfInverse(place, image, configuration);
+}
+
 cv::Mat ImageOf(const std::string& place,
                 sensor_msgs::CompressedImage message) {
-  const bool is_depth =
-      message.format.find("compressedDepth") != std::string::npos;
-  if (is_depth) {
-    // A configuration is before the PNG: what it is for, two numbers.
-    constexpr std::size_t kConfiguration = 12;
-    if (message.format.rfind(encodings::TYPE_32FC1, 0) == 0) {
-      throw InputError(place + ": '" + message.format +
-                       "': expected 16UC1; compressedDepth");
-    }
-    const auto begin = message.data.begin();
-    message.data.erase(begin,
-                       begin + std::min(kConfiguration, message.data.size()));
+  if (message.format.find("compressedDepth") != std::string::npos) {
+    return DepthOf(place, std::move(message));
   }
-  const int flags = is_depth ? cv::IMREAD_UNCHANGED : cv::IMREAD_COLOR;
-  return DecodeImage(place, message.data, flags);
+  return DecodeImage(place, message.data, cv::IMREAD_COLOR);
 }
 
 Calibration CalibrationOf(const std::string& place,

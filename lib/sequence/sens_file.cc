@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/number_text.h"
 #include "splitfusion/lib/sequence/calibration_files.h"
 #include "splitfusion/lib/sequence/image_file.h"
 
@@ -104,11 +106,9 @@ void SensFile::ReadHeader(Stream* stream) {
   cameras_.depth_intrinsic = stream->ReadMatrix();
   const cv::Mat_<double> depth_extrinsic = stream->ReadMatrix();
   cameras_.color_extrinsic =
-      RigidMotion(path_ + ": pose of the colour camera", color_extrinsic)
-          .value_or(Rigid3d::Identity());
+      KnownRigidMotion(path_ + ": pose of the colour camera", color_extrinsic);
   cameras_.depth_extrinsic =
-      RigidMotion(path_ + ": pose of the depth camera", depth_extrinsic)
-          .value_or(Rigid3d::Identity());
+      KnownRigidMotion(path_ + ": pose of the depth camera", depth_extrinsic);
   color_compression_ = stream->Read<std::int32_t>();
   depth_compression_ = stream->Read<std::int32_t>();
   if (color_compression_ < kColorRaw || color_compression_ > kColorJpeg ||
@@ -131,6 +131,9 @@ void SensFile::ReadHeader(Stream* stream) {
   cameras_.color_size = read_size();
   cameras_.depth_size = read_size();
   cameras_.depth_scale = stream->Read<float>();
+  if (std::isfinite(cameras_.depth_scale) && cameras_.depth_scale > 0) return;
+  throw InputError(path_ + ": depth shift " + NumberText(cameras_.depth_scale) +
+                   ": expected depth units in a metre, a number > 0");
 }
 
 void SensFile::ReadFrames(Stream* stream) {

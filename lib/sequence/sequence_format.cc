@@ -22,7 +22,7 @@ Trajectory SequenceFormat::FindPoses(
     const std::string& sequence, const std::vector<AssociatedFiles>&) const {
   const auto file = std::filesystem::path(sequence) / "groundtruth.txt";
   if (!std::filesystem::exists(file)) return {};
-  return ReadTumTrajectory(file.string());
+  return ReadTumPoses(file.string());
 }
 
 std::optional<ImageHeader> SequenceFormat::ReadColorHeader(

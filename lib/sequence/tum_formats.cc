@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 
+#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/sequence/calibration_files.h"
 
 namespace splitfusion {
@@ -186,7 +187,7 @@ class IclNuimFormat : public TumFormat {
       const std::vector<AssociatedFiles>& frames) const override {
     const std::string path = FirstEndingIn(sequence, kPoses);
     if (path.empty()) return TumFormat::FindPoses(sequence, frames);
-    Trajectory poses = ReadTumTrajectory(path);
+    Trajectory poses = ReadTumPoses(path);
     for (TimedPose& pose : poses) {
       pose.timestamp /= kIclFramesPerSecond;
       pose.world_from_camera = MirroredInY(pose.world_from_camera);
@@ -199,6 +200,14 @@ class IclNuimFormat : public TumFormat {
 };
 
 }  // namespace
+
+Trajectory ReadTumPoses(const std::string& path) {
+  Trajectory poses = ReadTumTrajectory(path);
+  if (!poses.empty()) return poses;
+  throw InputError(path +
+                   ": 0 poses: expected lines 'timestamp tx ty tz qx qy qz "
+                   "qw'");
+}
 
 std::unique_ptr<SequenceFormat> MakeTumFormat() {
   return std::make_unique<TumFormat>();

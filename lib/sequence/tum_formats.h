@@ -2,10 +2,16 @@
 #define SPLITFUSION_LIB_SEQUENCE_TUM_FORMATS_H_
 
 #include <memory>
+#include <string>
 
 #include "splitfusion/lib/sequence/sequence_format.h"
 
 namespace splitfusion {
+
+/// Poses that come with a sequence: ReadTumTrajectory().
+///
+/// @throw InputError also if the file has none.
+Trajectory ReadTumPoses(const std::string& path);
 
 /// The layout of the TUM RGB-D benchmark: `associations.txt`, or else `rgb.txt`
 /// and `depth.txt` paired by time stamp; colour png or jpg; depth 16-bit PNG.

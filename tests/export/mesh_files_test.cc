@@ -18,6 +18,7 @@
 namespace splitfusion {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 template <typename T>
@@ -103,6 +104,35 @@ TEST(WritePointCaches, HaveEveryFrameFromFirstToLast) {
               0)
         << sample;
   }
+}
+
+TEST(WritePointCaches, LeaveOutWhatNoTriangleUses) {
+  const TemporaryFolder folder;
+  JoinedRun().Write(folder / "run");
+  ExportScene scene = ReadExportScene(folder / "run", {});
+  ExportSurface& surface = scene.surfaces.at(1);
+  const std::size_t count = surface.mesh.vertices.size();
+  std::vector<Eigen::Vector3i>& triangles = surface.mesh.triangles;
+  triangles = {{4, 2, 5}};
+  ASSERT_GT(count, 6u);
+  ExportSurface used = surface;
+  LeaveUnusedOut(&used);
+  EXPECT_EQ(used.source, (std::vector<int>{surface.source[2], surface.source[4],
+                                           surface.source[5]}));
+  EXPECT_EQ(used.mesh.triangles[0], Eigen::Vector3i(1, 0, 2));
+  EXPECT_EQ(used.skinning.size(), 3u);
+  EXPECT_EQ(used.mesh.colors.size(), surface.mesh.colors.empty() ? 0u : 3u);
+  const auto files = WritePointCaches(folder / "x", scene);
+  const std::string cache = folder.Read("x_" + surface.name + ".pc2");
+  EXPECT_EQ(ValueIn<std::int32_t>(cache, 16), 3);
+  const std::vector<Eigen::Vector3f> all =
+      surface.At(surface.moments[0]).vertices;
+  EXPECT_EQ(ValueIn<float>(cache, 32), all[2].x());
+  EXPECT_EQ(ValueIn<float>(cache, 32 + 12), all[4].x());
+  EXPECT_THAT(folder.Read("x_" + surface.name + ".obj"),
+              ContainsRegex("\nf 2[^ ]* 1[^ ]* 3[^ ]*\n$"));
+  triangles.clear();
+  EXPECT_EQ(WritePointCaches(folder / "y", scene).size(), files.size() - 1);
 }
 
 TEST(WriteNpz, IsAZipOfArraysAndTheSameTwice) {

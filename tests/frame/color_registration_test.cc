@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
 #include "support/two_cameras.h"
@@ -58,6 +59,37 @@ TEST(ColorRegistration, TheColourImageMayHaveAnotherSize) {
     cv::extractChannel(difference, difference, 0);
     const cv::Mat away = NearEdges(apart.depth) == 0;
     EXPECT_LT(cv::countNonZero((difference > 5) & away), 100) << scale;
+  }
+}
+
+TEST(ColorRegistration, OfScanNetsSizesPlacesAreExact) {
+  const PinholeCamera camera = {640, 480, 577.9, 578.7, 319.5, 239.5};
+  ColorCamera color_camera;
+  color_camera.width = 1296;
+  color_camera.height = 968;
+  color_camera.fx = color_camera.fy = 1170.2;
+  color_camera.cx = 647.8;
+  color_camera.cy = 483.8;
+  Rigid3d& motion = color_camera.color_from_depth;
+  motion.linear() =
+      Eigen::AngleAxisd(0.01, Eigen::Vector3d(1, -2, 1).normalized())
+          .toRotationMatrix();
+  motion.translation() = Eigen::Vector3d(-0.03, 0.002, 0.001);
+  cv::Mat_<float> depth(camera.height, camera.width);  // A slope.
+  for (int v = 0; v < depth.rows; ++v) {
+    for (int u = 0; u < depth.cols; ++u) {
+      depth(v, u) = 1.5f + 0.001f * static_cast<float>(u + v);
+    }
+  }
+  const cv::Mat_<cv::Vec2f> places = ColorPlaces(camera, color_camera, depth);
+  for (int v = 20; v < depth.rows - 20; v += 40) {
+    for (int u = 20; u < depth.cols - 20; u += 40) {
+      const Eigen::Vector3d p =
+          motion * (depth(v, u) * Eigen::Vector3d((u - 319.5) / 577.9,
+                                                  (v - 239.5) / 578.7, 1));
+      EXPECT_NEAR(places(v, u)[0], 1170.2 * p.x() / p.z() + 647.8, 0.01);
+      EXPECT_NEAR(places(v, u)[1], 1170.2 * p.y() / p.z() + 483.8, 0.01);
+    }
   }
 }
 

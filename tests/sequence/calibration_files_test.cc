@@ -117,9 +117,9 @@ TEST_F(CalibrationFiles, BrokenMatricesAreNamed) {
   ExpectRefused("k.txt", "1 0 2\n0 3\n", ":2: '0 3': expected a row");
   ExpectRefused("k.txt", "1 2 3 4 5\n", ":1: '1 2 3 4 5': expected a row");
   ExpectRefused("k.txt", "1 0 2\n0 -3 4\n0 0 1\n",
-                ": expected a matrix of intrinsics");
+                ": '1 0 2, 0 -3 4, 0 0 1': expected a matrix of intrinsics");
   ExpectRefused("k.txt", "1 0 2\n0 3 4\n0 0 7\n",
-                ": expected a matrix of intrinsics");
+                ": '1 0 2, 0 3 4, 0 0 7': expected a matrix of intrinsics");
 }
 
 TEST_F(CalibrationFiles, BrokenJsonIsNamed) {
@@ -163,7 +163,7 @@ TEST_F(CalibrationFiles, AMotionIsRigid) {
   EXPECT_FALSE(RigidMotion("m", unknown));
   const cv::Mat_<double> zeros = cv::Mat_<double>::zeros(4, 4);
   ExpectInputError([&] { RigidMotion("m.txt", zeros); },
-                   "m.txt: expected a rigid motion");
+                   "m.txt: turned by '0 0 0, 0 0 0, 0 0 0': expected a rigid");
 }
 
 }  // namespace

@@ -148,8 +148,11 @@ TEST_F(IclNuimData, HasPosesMirroredAndThirtyFramesASecond) {
 }
 
 TEST_F(IclNuimData, BrokenPosesAreNamed) {
-  folder_.Write("traj0_frei_png/livingRoom0.gt.freiburg", "1 2 3\n");
   const ImageFolderReader reader(folder_ / "traj0_frei_png");
+  folder_.Write("traj0_frei_png/livingRoom0.gt.freiburg", "# none\n");
+  ExpectInputError([&] { reader.FindSequencePoses(); },
+                   "livingRoom0.gt.freiburg: 0 poses: expected lines");
+  folder_.Write("traj0_frei_png/livingRoom0.gt.freiburg", "1 2 3\n");
   ExpectInputError([&] { reader.FindSequencePoses(); },
                    "livingRoom0.gt.freiburg:1");
 }
@@ -186,6 +189,8 @@ TEST_F(DataSets, SevenScenesHasPoses) {
       ImageFolderReader(folder_ / "seq-01").FindSequencePoses();
   ASSERT_EQ(poses.size(), 1u);
   EXPECT_EQ(poses[0].world_from_camera.translation().x(), 2);
+  std::filesystem::remove(folder_ / "seq-01/frame-000001.color.png");
+  ExpectRefused("seq-01", "auto", "frame-000001.color.png: cannot be opened");
   folder_.Write("seq-01/frame-000001.pose.txt", "1 0 0 0\n");
   ExpectInputError(
       [&] { ImageFolderReader(folder_ / "seq-01").FindSequencePoses(); },
@@ -244,6 +249,17 @@ TEST_F(BundleFusionData, ABrokenInfoIsNamed) {
   ExpectRefused("apt0", "auto", "info.txt: no line 'm_depthWidth = ...'");
   change("50 0 31.5 0 0 51", "50 0 31.5 0 51");
   ExpectRefused("apt0", "auto", "expected a matrix of 4x4");
+  change("m_depthWidth = 64", "m_depthWidth = 6.5");
+  ExpectRefused("apt0", "auto", "info.txt:5: '6.5': expected a size in pixels");
+  change("m_depthShift = 1000", "m_depthShift = 0");
+  ExpectRefused("apt0", "auto", "info.txt:7: '0': expected depth units in a");
+  change("Intrinsic = 100 0", "Intrinsic = -1 0");
+  ExpectRefused("apt0", "auto",
+                "info.txt: m_calibrationColorIntrinsic: '-1 0 64, 0 100 48, "
+                "0 0 1': expected a matrix of intrinsics");
+  change("Intrinsic = 50 0", "Intrinsic = 1e40 0");
+  ExpectRefused("apt0", "auto",
+                "apt0: camera fx = 1e+40: expected a focal length > 0, 100000");
   change("m_colorWidth = 128", "m_colorWidth = 64");
   ExpectRefused("apt0", "auto", "image of 128x96: expected 64x96");
 }
@@ -283,7 +299,14 @@ TEST_F(ScanNetData, WithoutAColourCameraTheImagesMustBeRegistered) {
 }
 
 TEST_F(ScanNetData, BrokenFilesAreNamed) {
-  folder_.Write("scene/intrinsic/intrinsic_color.txt", "1 0\n");
+  const std::string color = "scene/intrinsic/intrinsic_color.txt";
+  folder_.Write(color, "-1 0 64 0\n0 100 48 0\n0 0 1 0\n0 0 0 1\n");
+  ExpectRefused("scene", "auto", "intrinsic_color.txt: '-1 0 64, 0 100 48, 0");
+  const std::string place = "scene/intrinsic/extrinsic_color.txt";
+  folder_.Write(place, "1 0 0 nan\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  ExpectRefused("scene", "auto", "extrinsic_color.txt: turned by '1 0 0, 0 1");
+  std::filesystem::remove(folder_ / place);
+  folder_.Write(color, "1 0\n");
   ExpectRefused("scene", "auto", "intrinsic_color.txt: a matrix of 1x2");
   std::filesystem::remove_all(folder_ / "scene/color");
   ExpectRefused("scene", "scannet", "no folder of colour images");
@@ -345,6 +368,10 @@ TEST_F(DataSets, Open3dPairsByNumberOrOrder) {
   ExpectInputError(
       [&] { ImageFolderReader(folder_ / "o").FindSequencePoses(); },
       "trajectory.log:2: '1 0': expected 4 numbers");
+  folder_.Write("o/trajectory.log", "1 1 2\n1 0 0 0\n");
+  ExpectInputError(
+      [&] { ImageFolderReader(folder_ / "o").FindSequencePoses(); },
+      "trajectory.log: 2 lines: expected blocks of an index line");
   WriteDepth("p/depth/00002.png", 3000);
   ExpectRefused("p", "auto", "2 colour and 3 depth images");
   folder_.Write("o/intrinsic.json", "{");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "splitfusion/lib/base/error.h"
+#include "support/expect_input_error.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
@@ -20,6 +21,23 @@ TEST(WriteImage, NamesThePathItCannotWrite) {
   }
   EXPECT_THROW(WriteImage(folder / "empty.png", cv::Mat()), InputError);
   EXPECT_FALSE(folder.Has("empty.png"));
+}
+
+TEST(ReadDepthImage, NamesADamagedPngWithoutALineOfTheDecoder) {
+  const TemporaryFolder folder;
+  cv::Mat depth(48, 64, CV_16UC1);
+  cv::RNG(1).fill(depth, cv::RNG::UNIFORM, 0, 10000);
+  WriteImage(folder / "d.png", depth);
+  const std::string whole = folder.Read("d.png");
+  std::string bytes = whole;
+  bytes[bytes.size() / 2] ^= 1;
+  folder.Write("d.png", bytes);
+  testing::internal::CaptureStderr();
+  ExpectInputError([&] { ReadDepthImage(folder / "d.png"); },
+                   " bytes of a png whose chunk IDAT is damaged: expected");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  folder.Write("d.png", whole + "and more");
+  EXPECT_EQ(cv::norm(ReadDepthImage(folder / "d.png"), depth, cv::NORM_INF), 0);
 }
 
 }  // namespace

@@ -303,6 +303,57 @@ TEST_F(RosBags, ImagesMayBeCompressedThemselves) {
   ExpectSame(OpenRosBag(Path())->Image(depth, 0), Depth(0));
 }
 
+/// 32FC1 as compressed_depth_image_transport writes it by default: up to 10 m,
+/// quantised as 100 says.
+sensor_msgs::CompressedImage InverseDepth(const cv::Mat_<float>& metres,
+                                          float a = 100 * 101) {
+  const float b = 1 - a / 10;
+  cv::Mat_<std::uint16_t> inverse(metres.size(), std::uint16_t{0});
+  for (int v = 0; v < metres.rows; ++v) {
+    for (int u = 0; u < metres.cols; ++u) {
+      const float z = metres(v, u);
+      if (z > 0) inverse(v, u) = static_cast<std::uint16_t>(a / z + b);
+    }
+  }
+  std::vector<std::uint8_t> configuration(12);
+  std::memcpy(configuration.data() + 4, &a, sizeof(a));
+  std::memcpy(configuration.data() + 8, &b, sizeof(b));
+  return CompressedMessage(0, inverse, ".png", "32FC1; compressedDepth png",
+                           configuration);
+}
+
+TEST_F(RosBags, DepthInMetresMayBeQuantised) {
+  const std::string topic = "/camera/depth/image/compressedDepth";
+  const auto write = [&](const sensor_msgs::CompressedImage& depth) {
+    New();
+    Add("/camera/depth/camera_info", Camera(50));
+    Add(kColorTopic, ImageMessage(0, Noise(CV_8UC3, 0), "rgb8"));
+    Add(topic, depth);
+    Close();
+  };
+  cv::Mat_<float> metres;
+  Depth(0).convertTo(metres, CV_32FC1, 3 / 1000.0);
+  metres(5, 7) = 0;
+  write(InverseDepth(metres));
+  const cv::Mat image = OpenRosBag(Path())->Image(topic, 0);
+  ASSERT_EQ(image.type(), CV_32FC1);
+  EXPECT_EQ(image.at<float>(5, 7), 0);
+  // A step is z^2 / a: 1.1 mm at 3.4 m.
+  EXPECT_LT(cv::norm(image, metres, cv::NORM_INF), 1.3e-3);
+  EXPECT_NEAR(ImageFolderReader(Path()).Next()->depth.at<float>(24, 32),
+              metres(24, 32), 1.3e-3);
+  write(InverseDepth(metres, std::nanf("")));
+  ExpectRefused("compressedDepth with nan and ");
+  sensor_msgs::CompressedImage other = InverseDepth(metres);
+  other.format = "32FC1; compressedDepth rvl";
+  write(other);
+  ExpectRefused("message 0: '32FC1; compressedDepth rvl': expected");
+  other.format = "32FC1; compressedDepth";
+  other.data.resize(8);
+  write(other);
+  ExpectRefused("message 0: 0 bytes that are no image");
+}
+
 TEST_F(RosBags, WhatIsNoneIsNamed) {
   const std::string none = " bytes that are no .bag of ROS 1, version 2.0, or";
   ExpectRefusedWith("", "take.bag: 0" + none);

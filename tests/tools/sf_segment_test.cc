@@ -135,6 +135,36 @@ TEST_F(SfSegment, ARunWithANetworkIsRepeatedFromItsMasks) {
   EXPECT_FALSE(folder_.Has("run/detections"));
 }
 
+TEST_F(SfSegment, MasksOfARunAreOfImagesWithoutTheLens) {
+  const std::string camera =
+      "width 160\nheight 120\nfx 130\nfy 130\ncx 80\ncy 60\n"
+      "depth_scale 5000\nk1 ";
+  fs::remove(folder_ / "sequence/calibration.txt");
+  folder_.Write("sequence/camera.txt", camera + "-0.4\n");
+  const std::string flags =
+      "--pictures_every=0 --warped_every=0 --rolling_shutter=0 ";
+  ASSERT_EQ(Run("sf_run", "run", flags + NetworkFlags()).exit_code, 0);
+  ASSERT_EQ(Run("sf_segment", "masks", NetworkFlags()).exit_code, 0);
+  const auto masks = [&](const std::string& run) {
+    std::string all;
+    for (const std::string& stem : Stems()) {
+      all += folder_.Read(run + "/masks/" + stem + ".png");
+    }
+    return all + folder_.Read(run + "/trajectory.txt");
+  };
+  const std::string of_run = flags + "--masks=" + (folder_ / "run/detections");
+  const ProgramResult repeated = Run("sf_run", "repeated", of_run);
+  ASSERT_EQ(repeated.exit_code, 0) << repeated.errors;
+  EXPECT_EQ(masks("repeated"), masks("run"));
+  // Those of sf_segment are of the files as they are.
+  const std::string of_files = flags + "--masks=" + (folder_ / "masks");
+  ASSERT_EQ(Run("sf_run", "of_files", of_files).exit_code, 0);
+  folder_.Write("sequence/camera.txt", camera + "-0.3\n");
+  ExpectRefused("sf_run", of_run,
+                "run/detections: masks of images without the lens "
+                "'-0.4 0 0 0 0 0 0 0': expected that of the sequence, '-0.3 ");
+}
+
 TEST_F(SfSegment, MasksOfAnotherSequenceAreNotGoneOnWith) {
   ASSERT_EQ(Run("sf_segment", "masks", NetworkFlags()).exit_code, 0);
   const std::string stem = Stems()[0];
