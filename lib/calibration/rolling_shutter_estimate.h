@@ -20,7 +20,7 @@ struct RollingShutterEstimate {
   double turn = 0;  ///< Median difference of their rotations a frame, degrees.
   double interval = 0;  ///< Between frames, median, seconds.
 
-  /// Whether the rows were certainly exposed one after the other: by three
+  /// Whether the rows were certainly exposed one after the other: by five
   /// standard errors, for .15 of the interval between frames at least, and no
   /// longer than that as far as it is known.
   bool IsNeeded() const;
