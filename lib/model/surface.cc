@@ -15,6 +15,7 @@
 #include "splitfusion/lib/model/canonical_places.h"
 #include "splitfusion/lib/model/observe_surface.h"
 #include "splitfusion/lib/tsdf/forget_voxels.h"
+#include "splitfusion/lib/tsdf/release_blocks.h"
 
 namespace splitfusion {
 namespace {
@@ -182,11 +183,25 @@ void Surface::ForgetOther(const LiveView& live, int other) {
   Forget(places);
 }
 
+/// Points that are carried back astray leave blocks behind that hold nothing.
+void Surface::ReleaseBlocks() {
+  constexpr double kGrowth = 1.5;  // Speed: what is kept by block is made anew.
+  if (static_cast<double>(volume_.leaf_count()) <
+      kGrowth * static_cast<double>(kept_blocks_)) {
+    return;
+  }
+  ReleaseFreeBlocks(&volume_);
+  kept_blocks_ = volume_.leaf_count();
+  integrator_ = WarpedIntegrator();
+  mesh_extractor_ = MeshExtractor();
+}
+
 int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
   std::vector<Eigen::Vector3f> warped = WarpedVertices();
   refuted_.Look(live, id_, warped, mesh_skinning(), graph_.size(),
                 options_.tsdf.truncation);
   unconfirmed_.Look(live, id_, NodePlaces(graph_), options_.tsdf.truncation);
+  ReleaseBlocks();
   const int forgotten = ForgetRefuted();
   if (forgotten > 0) warped = WarpedVertices();
   const CanonicalPlaces found = FindCanonicalPlaces(

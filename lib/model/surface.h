@@ -175,6 +175,7 @@ class Surface {
  private:
   void PlaceGraph(const LiveView& live);
   int FuseWarped(const LiveView& live, DepthObservation* observation);
+  void ReleaseBlocks();
   std::vector<char> NodesToForget() const;
   int ForgetRefuted();
   void UpdateMeshAndGraph(bool retie);
@@ -202,6 +203,7 @@ class Surface {
   MotionLog history_{spool_};
   RefutedParts refuted_;
   UnconfirmedNodes unconfirmed_;
+  std::size_t kept_blocks_ = 0;  // When free ones were released last.
   // What it was before Reanchor(), and parts that were refuted.
   RetiredModels retired_{spool_};
 };

@@ -10,7 +10,7 @@ void Surface::Serialize(Archive* archive) {
   archive->Section("surface");
   ExpectSame(archive, "id", id_);
   (*archive)(label_, inactive_, volume_, graph_, graph_record_, mesh_, history_,
-             refuted_, unconfirmed_, retired_);
+             refuted_, unconfirmed_, kept_blocks_, retired_);
   if constexpr (Archive::kReads) {
     if (graph_.size() == 0) archive->Fail("a graph without nodes");
     RestoreCaches();
