@@ -39,6 +39,8 @@ void NodeBirths::Append(std::vector<NodeMotion>* motions) const {
     carriers.motions.push_back((*motions)[node]);
   }
   const WarpField warp(carriers);
+  // Histories of many frames grow so: not by twice what they need.
+  motions->reserve(motions->size() + places_.size());
   for (std::size_t i = 0; i < places_.size(); ++i) {
     motions->push_back(warp.BlendMotion(skinning_[i], places_[i]));
   }

@@ -1,11 +1,11 @@
 #ifndef SPLITFUSION_LIB_MODEL_RETIRED_MODELS_H_
 #define SPLITFUSION_LIB_MODEL_RETIRED_MODELS_H_
 
-#include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
-#include "splitfusion/lib/base/spool_file.h"
+#include "splitfusion/lib/base/spooled_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_log.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
@@ -20,16 +20,15 @@ class RetiredModels {
  public:
   /// `file`: where they go.
   explicit RetiredModels(std::shared_ptr<SpoolFile> file)
-      : file_(std::move(file)) {}
+      : file_(std::move(file)), shapes_(file_) {}
 
   /// Their number.
-  int size() const { return static_cast<int>(models_.size()); }
+  int size() const { return static_cast<int>(histories_.size()); }
 
   /// Takes one more; `history` is complete, see MotionLog::Finish().
   ///
   /// @throw InputError if the file cannot be written.
-  void Add(const TriangleMesh& mesh, const DeformationGraph& graph,
-           MotionLog history);
+  void Add(TriangleMesh mesh, DeformationGraph graph, MotionLog history);
 
   /// The model i, 0..size() - 1.
   ///
@@ -41,18 +40,21 @@ class RetiredModels {
   void Serialize(Archive* archive);
 
  private:
-  /// Where a model is.
-  struct Place {
-    std::uint64_t offset = 0;  // Of mesh and graph.
-    std::uint64_t bytes = 0;   // Of both.
-    MotionLog history;
+  /// What a model is beside its motions.
+  struct Shape {
+    TriangleMesh mesh;       ///< Canonical frame, metres.
+    DeformationGraph graph;  ///< At its last motions.
+
+    /// Saves or restores it.
+    template <typename Archive>
+    void Serialize(Archive* archive) {
+      (*archive)(mesh, graph);
+    }
   };
 
-  void Read(const Place& place, TriangleMesh* mesh,
-            DeformationGraph* graph) const;
-
   std::shared_ptr<SpoolFile> file_;
-  std::vector<Place> models_;
+  SpooledList<Shape> shapes_;
+  std::vector<MotionLog> histories_;
 };
 
 }  // namespace splitfusion

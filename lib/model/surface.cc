@@ -122,7 +122,7 @@ bool Surface::Reanchor(const LiveView& live) {
   if (!anew.Initialize(live)) return false;
   FinishMesh();
   history_.Finish();
-  retired_.Add(mesh_, graph_, std::move(history_));
+  retired_.Add(std::move(mesh_), std::move(graph_), std::move(history_));
   anew.spool_ = spool_;
   anew.history_ = MotionLog(spool_);
   anew.retired_ = std::move(retired_);
@@ -240,7 +240,8 @@ int Surface::ForgetRefuted() {
     SurfacePart part = PartOf(shown, mesh_skinning_.supports(), graph_, nodes);
     MotionLog motions = history_.Part(part.nodes, part.first_frame);
     if (!motions.empty()) {
-      retired_.Add(part.mesh, part.graph, std::move(motions));
+      retired_.Add(std::move(part.mesh), std::move(part.graph),
+                   std::move(motions));
     }
   }
   ForgetVoxels(graph_, *index_, nodes, &volume_);

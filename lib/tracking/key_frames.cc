@@ -128,8 +128,8 @@ void KeyFrames::KeepOnPath(const LiveView& live,
   if (options_.overlap == 0 || !sight) return;
   const bool known = latest_on_path_.frame >= 0;
   // Where the camera was last before it was lost.
-  if (known && !goes_on && latest_on_path_.frame != path_.back().frame) {
-    path_.push_back(LatestOnPath(live.camera));
+  if (known && !goes_on && latest_on_path_.frame != last_on_path_.frame) {
+    AddToPath(LatestOnPath(live.camera));
   }
   PathFrame now;
   now.frame = frame;
@@ -140,7 +140,7 @@ void KeyFrames::KeepOnPath(const LiveView& live,
   now.points = PointsShown(now.view.depth, live.camera);
   latest_on_path_ = now;
   if (now.goes_on) {
-    const KeyFrame& before = path_.back().view;
+    const KeyFrame& before = last_on_path_.view;
     const Rigid3d motion = Rigid3d(before.pose) * camera_from_world.inverse();
     if (SeenShare(now.view.depth, motion, before.depth, live.camera) >=
         options_.overlap) {
@@ -148,7 +148,13 @@ void KeyFrames::KeepOnPath(const LiveView& live,
     }
   }
   now.view.landmarks = LandmarksOf(*sight, live.camera, options_.landmarks);
-  path_.push_back(std::move(now));
+  AddToPath(std::move(now));
+}
+
+void KeyFrames::AddToPath(PathFrame frame) {
+  path_.Add(frame);
+  frame.view.landmarks = {};
+  last_on_path_ = std::move(frame);
 }
 
 PathFrame KeyFrames::LatestOnPath(const PinholeCamera& camera) const {
@@ -158,7 +164,8 @@ PathFrame KeyFrames::LatestOnPath(const PinholeCamera& camera) const {
 }
 
 std::vector<PathFrame> KeyFrames::Path(const PinholeCamera& camera) const {
-  std::vector<PathFrame> path = path_;
+  std::vector<PathFrame> path;
+  for (int i = 0; i < path_.size(); ++i) path.push_back(path_.At(i));
   if (!path.empty() && latest_on_path_.frame != path.back().frame) {
     path.push_back(LatestOnPath(camera));
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/option_list.h"
+#include "splitfusion/lib/base/spooled_list.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/geometry/typical_points.h"
@@ -72,10 +73,14 @@ class KeyFrames {
   /// The same frame as one on the camera's path, before Keep(). On it are
   /// those that show much that the one before on it does not, and those before
   /// and after the camera was lost. `goes_on`: it was not since the latest one.
+  ///
+  /// @throw InputError if a temporary file cannot be written.
   void KeepOnPath(const LiveView& live, const Rigid3d& camera_from_world,
                   int frame, bool goes_on);
 
   /// The camera's path so far, up to the latest frame.
+  ///
+  /// @throw InputError if a temporary file cannot be read.
   std::vector<PathFrame> Path(const PinholeCamera& camera) const;
 
   /// Where the camera may be (camera from world, metres), the place on which
@@ -88,12 +93,16 @@ class KeyFrames {
   /// Saves or restores them, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
-    (*archive)(key_frames_, latest_, latest_pose_, path_, latest_on_path_);
+    (*archive)(key_frames_, latest_, latest_pose_, path_, last_on_path_,
+               latest_on_path_);
   }
 
  private:
   /// Key frames by how alike they look as a whole, at most `candidates`.
   std::vector<const KeyFrame*> MostAlike(const LiveView& live) const;
+
+  /// Takes one more frame on the path.
+  void AddToPath(PathFrame frame);
 
   /// The latest frame with its landmarks.
   PathFrame LatestOnPath(const PinholeCamera& camera) const;
@@ -102,8 +111,10 @@ class KeyFrames {
   std::vector<KeyFrame> key_frames_;
   Sight latest_;                                           // May be empty.
   Eigen::Matrix4d latest_pose_ = Eigen::Matrix4d::Zero();  // Likewise.
-  std::vector<PathFrame> path_;
-  PathFrame latest_on_path_;  // Without landmarks; frame -1: none.
+  // Nothing asks for it before the end, but for what its last frame shows.
+  SpooledList<PathFrame> path_;
+  PathFrame last_on_path_;    // Without landmarks, as the next one.
+  PathFrame latest_on_path_;  // Frame -1: none.
 };
 
 }  // namespace splitfusion
