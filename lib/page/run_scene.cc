@@ -23,9 +23,9 @@ using Values = std::vector<std::int32_t>;
 
 constexpr double kMotions = 2e6;  // Layout. Nodes times frames of all surfaces.
 constexpr int kVertices = 30000;  // Layout. Of a surface.
-constexpr double kUnit = 1e-4;    // Layout. Of places, metres.
-constexpr double kRotationUnit = 2.5e-4;    // Layout. Of a unit quaternion.
-constexpr double kWeightUnit = 1.0 / 2047;  // Layout. Of weights of Eq. 3.
+constexpr double kUnit = 4e-5;    // Layout. Of places, metres.
+constexpr double kRotationUnit = 1e-4;      // Layout. Of a unit quaternion.
+constexpr double kWeightUnit = 1.0 / 8191;  // Layout. Of weights of Eq. 3.
 
 std::int32_t InUnits(double value, double unit) {
   return static_cast<std::int32_t>(std::lround(value / unit));

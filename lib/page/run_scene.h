@@ -18,7 +18,7 @@ struct RunScene {
 
 /// All surfaces of a run as they move, made smaller for a page: of each at most
 /// about 30,000 vertices that its triangles still need when the least important
-/// edges are collapsed, places in tenths of a millimetre, rotations in 1/4000
+/// edges are collapsed, places in steps of 0.04 mm, rotations in 1/10000
 /// of a quaternion's entries; every n-th frame where there are more than two
 /// million motions of nodes. `source` of a surface are the indices that its
 /// vertices have in mesh.ply.
