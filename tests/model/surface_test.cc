@@ -342,6 +342,31 @@ TEST(Surface, RefutedPartsGoOnAfterACheckpoint) {
   EXPECT_EQ(b.history.frames.size(), a.history.frames.size());
 }
 
+TEST(Surface, ForgetsWhatWasSeenSeldomAndIsHiddenByItself) {
+  const auto forgotten_in = [](int sights) {
+    GraphOptions options;
+    options.confirmed_frames = 4;
+    options.unconfirmed_frames = 5;
+    Surface box(1, "person", SurfaceKind::kNonRigid, 4, SurfaceOptions(),
+                options);
+    EXPECT_TRUE(box.Initialize(ViewWithBox(kWhole)));
+    for (int i = 0; i < sights; ++i)
+      EXPECT_EQ(box.Fuse(ViewWithBox(kWhole)), 0);
+    box.UpdateMesh();
+    // The right half goes behind the left one.
+    DeformationGraph* graph = box.mutable_graph();
+    for (int i = 0; i < graph->size(); ++i) {
+      if (graph->positions[i].x() < 0) continue;
+      graph->motions[i].translation = Eigen::Vector3d(-0.25, 0, 0.2);
+    }
+    int frame = 1;
+    while (frame <= 10 && box.Fuse(ViewWithBox(kHalf)) == 0) ++frame;
+    return frame;
+  };
+  EXPECT_EQ(forgotten_in(3), 5);
+  EXPECT_EQ(forgotten_in(4), 11) << "it is confirmed";
+}
+
 TEST(Surface, ZeroFramesForgetNoParts) {
   GraphOptions graph;
   graph.refuted_frames = 0;

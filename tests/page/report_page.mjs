@@ -195,7 +195,7 @@ async function checkSurfaces() {
     }
   }
   assert.ok(compared > 0, 'there are warped meshes');
-  assert.ok(largest < 5e-4, `vertices are ${1000 * largest} mm off`);
+  assert.ok(largest < 1e-4, `vertices are ${1000 * largest} mm off`);
   console.log(`${compared} vertices in motion: at most ` +
               `${(1000 * largest).toFixed(3)} mm from warped/`);
 }
