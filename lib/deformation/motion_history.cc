@@ -278,6 +278,25 @@ const FrameMotions* MotionHistory::Find(int frame) const {
   return found != frames.end() && found->frame == frame ? &*found : nullptr;
 }
 
+std::vector<NodeMotion> MotionsOfAll(const MotionHistory& history,
+                                     const DeformationGraph& graph, int frame) {
+  std::vector<NodeMotion> all(graph.size());
+  history.Find(frame)->SpreadTo(&all);
+  for (std::size_t k = 0; k < graph.parts.size(); ++k) {
+    const ModelPart& part = graph.parts[k];
+    const int nearest = std::clamp(frame, part.first_frame, part.end_frame - 1);
+    const FrameMotions* own =
+        nearest == frame ? nullptr : history.Find(nearest);
+    const int from = own == nullptr ? -1 : own->IndexOf(part.node);
+    if (from < 0) continue;
+    const int end =
+        k + 1 < graph.parts.size() ? graph.parts[k + 1].node : graph.size();
+    std::copy_n(own->motions.begin() + from, end - part.node,
+                all.begin() + part.node);
+  }
+  return all;
+}
+
 void WriteMotions(const std::string& path, const MotionHistory& history,
                   int nodes) {
   const std::string bytes = BytesOf(history, nodes);

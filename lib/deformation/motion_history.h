@@ -74,6 +74,11 @@ struct MotionHistory {
   }
 };
 
+/// Motions of all nodes of a graph in a frame that the history has; nodes that
+/// are not in use then have the nearest one that they had.
+std::vector<NodeMotion> MotionsOfAll(const MotionHistory& history,
+                                     const DeformationGraph& graph, int frame);
+
 /// Writes `motions.bin`, little endian: 8 bytes "SFMOTN04" (the last two are
 /// the version), uint32 frames F, uint32 nodes N, then per frame int32 frame
 /// index, int32 tracked (0 or 1), uint32 ranges R, R x (uint32 first node,

@@ -52,8 +52,7 @@ bool AnimatedSurface::EndsBetween(int before, int frame) const {
 
 WarpField AnimatedSurface::WarpAt(int frame) const {
   DeformationGraph graph = surface_.graph;
-  graph.motions.resize(graph.size());
-  surface_.motions.Find(frame)->SpreadTo(&graph.motions);
+  graph.motions = MotionsOfAll(surface_.motions, graph, frame);
   return WarpField(graph);
 }
 

@@ -140,11 +140,10 @@ Values Motions(const SceneSurface& surface) {
   const std::size_t count = nodes * surface.motions.size();
   Values values(7 * count);
   std::vector<Eigen::Vector4d> before(nodes, Eigen::Vector4d::Zero());
-  // Nodes that are not in use in a frame stay as they were.
-  std::vector<NodeMotion> motions(nodes);
   std::size_t at = 0;
   for (const FrameMotions* frame : surface.motions) {
-    frame->SpreadTo(&motions);
+    const std::vector<NodeMotion> motions = MotionsOfAll(
+        surface.recorded.motions, surface.recorded.graph, frame->frame);
     for (std::size_t n = 0; n < nodes; ++n, ++at) {
       Eigen::Vector4d turn = Eigen::Quaterniond(motions[n].rotation).coeffs();
       // Of the two that are the same rotation, the one like the last.

@@ -12,12 +12,10 @@ namespace {
 /// The final mesh under the motions of one frame, camera frame; `whole`: with
 /// what was seen only later.
 TriangleMesh WarpMesh(const SurfaceModel& model,
-                      const std::vector<Skinning>& skinning,
-                      const FrameMotions& motions, bool whole) {
+                      const std::vector<Skinning>& skinning, int frame,
+                      bool whole) {
   DeformationGraph graph = model.graph;
-  // What is not in use stays in the canonical frame.
-  graph.motions.assign(graph.size(), NodeMotion());
-  motions.SpreadTo(&graph.motions);
+  graph.motions = MotionsOfAll(model.history, graph, frame);
   const WarpField warp(graph);
   TriangleMesh mesh = model.mesh;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -25,7 +23,7 @@ TriangleMesh WarpMesh(const SurfaceModel& model,
     mesh.normals[i] = warp.WarpNormal(skinning[i], mesh.normals[i]);
   }
   if (whole) graph.first_seen.clear();
-  mesh.triangles = SeenTriangles(model.mesh, skinning, graph, motions.frame);
+  mesh.triangles = SeenTriangles(model.mesh, skinning, graph, frame);
   return mesh;
 }
 
@@ -42,7 +40,7 @@ StretchedArea WriteWarpedMeshes(const RunPaths& paths, int id,
       SkinningIndex(model.graph, neighbors).Skin(model.mesh.vertices);
   for (const FrameMotions& motions : model.history.frames) {
     if (motions.frame % warped.every != 0) continue;
-    TriangleMesh mesh = WarpMesh(model, skinning, motions, warped.whole);
+    TriangleMesh mesh = WarpMesh(model, skinning, motions.frame, warped.whole);
     cut += CutStretched(stretched_from, &mesh);
     WritePly(paths.WarpedMesh(id, label, motions.frame), mesh);
   }

@@ -92,7 +92,7 @@ class Surface:
 
     def field(self, frame: int) -> WarpField:
         """The warp of a frame. RunError if the surface has no motion in it."""
-        return WarpField(self.graph, *self.motions.at(self._row(frame)))
+        return WarpField(self.graph, *self._motions_at(frame))
 
     def warp(self, points: np.ndarray, frame: int) -> np.ndarray:
         """Points (P x 3, canonical, metres) in a frame: P x 3 float32, camera
@@ -105,7 +105,7 @@ class Surface:
 
     def nodes_at(self, frame: int) -> np.ndarray:
         """Places of the nodes in a frame, N x 3, camera frame, metres."""
-        return self.graph.positions + self.motions.at(self._row(frame))[1]
+        return self.graph.positions + self._motions_at(frame)[1]
 
     def mesh_at(self, frame: int) -> Mesh:
         """The mesh in a frame as in `warped/FRAME.ply`: all vertices, and the
@@ -162,6 +162,25 @@ class Surface:
         places = field.points(carried, self.mesh.vertices[attachment.vertices])
         turned = field.rotations(carried)
         return places + np.einsum("pij,pj->pi", turned, attachment.offsets)
+
+    def _motions_at(self, frame: int) -> tuple[np.ndarray, np.ndarray]:
+        """Rotations and translations of all nodes; those that are not in use
+        have the nearest motion that they had."""
+        rotations, translations = self.motions.at(self._row(frame))
+        parts = self.graph.parts
+        for part, later in zip(parts, parts[1:] + [None]):
+            end = later.node if later else len(self.graph)
+            nearest = max(frame, part.first_frame)
+            if part.end_frame is not None:
+                nearest = min(nearest, part.end_frame - 1)
+            row = self.motions.index(nearest)
+            if nearest == frame or row is None:
+                continue
+            at = np.searchsorted(self.motions.nodes[row], part.node)
+            moved = self.motions.moved[row][at : at + end - part.node]
+            rotations[part.node : end] = moved[:, :9].reshape(-1, 3, 3)
+            translations[part.node : end] = moved[:, 9:]
+        return rotations, translations
 
     def _row(self, frame: int) -> int:
         row = self.motions.index(frame)

@@ -105,6 +105,21 @@ TEST(FrameMotions, KnowOfWhichNodesTheyAre) {
   EXPECT_EQ(all[4].rotation, Motion(2).rotation);
 }
 
+TEST(MotionsOfAll, AreTheNearestOfNodesThatAreNotInUse) {
+  DeformationGraph graph;
+  graph.positions.resize(3);
+  graph.parts = {{0, 3, 5}, {2, 4}};
+  const auto turned_by = [&](int frame, int node) {
+    return MotionsOfAll(SomeInUse(), graph, frame)[node].rotation;
+  };
+  EXPECT_EQ(turned_by(3, 1), Motion(0.2).rotation);
+  EXPECT_EQ(turned_by(3, 2), Motion(0.5).rotation) << "of frame 4";
+  EXPECT_EQ(turned_by(4, 2), Motion(0.5).rotation);
+  EXPECT_EQ(turned_by(5, 2), Motion(0.6).rotation);
+  EXPECT_EQ(turned_by(5, 0), Motion(0.3).rotation) << "of frame 4";
+  EXPECT_EQ(turned_by(5, 1), Motion(0.4).rotation);
+}
+
 TEST(Motions, OfNodesInUseSurviveWritingAndReading) {
   const TemporaryFolder folder;
   WriteMotions(folder / "motions.bin", SomeInUse(), 3);
