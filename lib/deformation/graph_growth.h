@@ -40,11 +40,11 @@ struct GraphOptions {
   /// meanwhile they are carved as the rest.
   double refuted_share = 0.02;
   /// A node is confirmed once it was seen in so many frames; 0: at once.
-  int confirmed_frames = 5;
+  int confirmed_frames = 10;
   /// What a node carries that is not confirmed is forgotten, too, once the
   /// surface itself has hidden it in so many frames on end, see
   /// UnconfirmedNodes.
-  int unconfirmed_frames = 60;
+  int unconfirmed_frames = 30;
 
   /// Names, ranges and meaning of all fields.
   void List(OptionList* list);
