@@ -30,7 +30,7 @@ constexpr double kStepReach = 3;
 /// ... and of frames that are distorted differently.
 constexpr double kPairReach = 12;
 /// Pairs whose rotations differ by less a frame, degrees, tell nothing ...
-constexpr double kLeastTurn = 0.4;
+constexpr double kLeastTurn = 2;
 /// ... nor if that is less than so many times as much as is uncertain of it.
 constexpr double kLeastCertainty = 4;
 /// What is nearer is left out, metres: it may come to lie behind the camera.
@@ -200,7 +200,9 @@ Moments FindMoments(const std::function<std::optional<Frame>(int)>& read,
   return moments;
 }
 
-/// Those that are distorted most differently, of those that show the same.
+/// Those that are distorted most differently, of those that show the same; none
+/// share a frame: where something large moves, the velocity of a frame may be
+/// that of it, and all pairs with that frame would be wrong alike.
 std::vector<FramePair> FindPairs(const Moments& moments,
                                  const PinholeCamera& camera) {
   std::vector<FramePair> all;
@@ -218,12 +220,16 @@ std::vector<FramePair> FindPairs(const Moments& moments,
   std::stable_sort(
       all.begin(), all.end(),
       [](const FramePair& a, const FramePair& b) { return a.turn > b.turn; });
-  all.resize(std::min<std::size_t>(all.size(), kTriedPairs));
   std::vector<FramePair> pairs;
+  std::vector<char> used(count, false);
+  int tried = 0;
   for (FramePair& pair : all) {
+    if (used[pair.from] != 0 || used[pair.to] != 0) continue;
+    if (tried++ == kTriedPairs) break;
     auto agreeing = Agreeing(moments.frames[pair.from], moments.frames[pair.to],
                              camera, kPairReach);
     if (!agreeing) continue;
+    used[pair.from] = used[pair.to] = true;
     pair.agreeing = std::move(*agreeing);
     pairs.push_back(std::move(pair));
     if (pairs.size() == kMostPairs) break;

@@ -88,6 +88,7 @@ def _parts(place: str, value: Any, nodes: int) -> list[Part]:
         good = isinstance(item, list) and len(item) == 3
         good = good and all(type(i) is int and i >= 0 for i in item[:2])
         good = good and (item[2] is None or type(item[2]) is int)
+        good = good and (item[2] is None or item[2] > item[1])
         good = good and item[0] < nodes
         good = good and (item[0] > parts[-1].node if parts else item[0] == 0)
         if not good:

@@ -74,6 +74,15 @@ class Surface:
                 f"{motions.node_count} nodes",
                 f"those of graph.json, {len(self.graph)}",
             )
+        for frame, nodes in zip(motions.frames, motions.nodes):
+            missing = self.graph.in_use(int(frame))
+            missing[nodes] = False
+            if missing.any():
+                refuse(
+                    self.folder / "motions.bin",
+                    f"frame {frame} without node {int(missing.argmax())}",
+                    "a motion of it, as graph.json has it in use",
+                )
         return motions
 
     @cached_property
