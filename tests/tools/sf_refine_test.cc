@@ -50,12 +50,13 @@ class SfRefine : public SfRun {
     std::pair<int, int> count;
     EXPECT_EQ(one.frames.size(), other.frames.size());
     for (std::size_t f = 0; f < one.frames.size(); ++f) {
-      const auto& motions = one.frames[f].motions;
-      for (int i = 0; i < static_cast<int>(motions.size()); ++i) {
+      const std::vector<NodeMotion>& motions = one.frames[f].motions;
+      const std::vector<char>& seen = one.frames[f].seen;
+      for (std::size_t i = 0; i < motions.size(); ++i) {
         if (motions[i].translation == other.frames[f].motions[i].translation) {
           continue;
         }
-        ++(one.frames[f].Saw(i) ? count.first : count.second);
+        ++(seen[i] != 0 ? count.first : count.second);
       }
     }
     return count;
