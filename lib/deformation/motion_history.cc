@@ -189,6 +189,15 @@ bool IsRigid(const NodeMotion& motion) {
          (r.transpose() * r).isIdentity(kTolerance) && r.determinant() > 0;
 }
 
+/// The node of which motion `index` of a frame is.
+int NodeOf(const FrameMotions& frame, int index) {
+  for (const NodeRange& range : frame.ranges) {
+    if (index < range.end - range.begin) return range.begin + index;
+    index -= range.end - range.begin;
+  }
+  return index;
+}
+
 void CheckFrame(const std::string& path, const FrameMotions& frame,
                 const MotionHistory& before) {
   const std::string place = path + ": frame " + std::to_string(frame.frame);
@@ -198,7 +207,8 @@ void CheckFrame(const std::string& path, const FrameMotions& frame,
   }
   for (std::size_t i = 0; i < frame.motions.size(); ++i) {
     if (IsRigid(frame.motions[i])) continue;
-    throw InputError(place + ", node " + std::to_string(i) +
+    throw InputError(place + ", node " +
+                     std::to_string(NodeOf(frame, static_cast<int>(i))) +
                      ": its motion is no rotation and translation: the file "
                      "is damaged");
   }

@@ -137,6 +137,15 @@ TEST(Motions, OfNodesInUseSurviveWritingAndReading) {
             16 + 3 * 20 + (2 + 3 + 1) * 49 + 8);
 }
 
+TEST(Motions, ThatAreDamagedAreNamedByTheirNode) {
+  const TemporaryFolder folder;
+  MotionHistory history = SomeInUse();
+  history.frames[2].motions[0].rotation *= -1;
+  WriteMotions(folder / "motions.bin", history, 3);
+  ExpectInputError([&] { ReadMotions(folder / "motions.bin"); },
+                   "frame 5, node 2: its motion is no rotation");
+}
+
 TEST(Motions, OfNodesThatCannotBeAreRefused) {
   const TemporaryFolder folder;
   for (const std::vector<NodeRange>& ranges :
