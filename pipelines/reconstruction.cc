@@ -1,7 +1,9 @@
 #include "splitfusion/pipelines/reconstruction.h"
 
 #include <algorithm>
+#include <mutex>
 #include <optional>
+#include <vector>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/calibration/color_camera_estimate.h"
@@ -16,6 +18,15 @@ const ImageFolderReader& Checked(const ImageFolderReader& reader) {
   return reader;
 }
 
+/// Takes the depth of what moves by itself off a frame.
+void LeaveNonRigidOut(const std::vector<InstanceMask>& masks,
+                      const LabelTable& labels, Frame* frame) {
+  for (const InstanceMask& one : masks) {
+    if (labels.Kind(one.class_name) != SurfaceKind::kNonRigid) continue;
+    frame->depth.setTo(0, one.mask);
+  }
+}
+
 }  // namespace
 
 Reconstruction::Reconstruction(const std::string& sequence,
@@ -28,7 +39,7 @@ Reconstruction::Reconstruction(const std::string& sequence,
       fusion(Checked(reader).camera(), options, labels, segmenter(reader),
              registries) {
   FindColorCamera();
-  FindRollingShutter();
+  FindRollingShutter(labels);
 }
 
 void Reconstruction::FindColorCamera() {
@@ -42,22 +53,36 @@ void Reconstruction::FindColorCamera() {
   note = estimate.Text();
 }
 
-void Reconstruction::FindRollingShutter() {
+void Reconstruction::FindRollingShutter(const LabelTable& labels) {
   const std::optional<double> given = reader.options().rolling_shutter;
   if (given) return fusion.set_rolling_shutter(*given);
-  const auto read = [&](int i) -> std::optional<Frame> {
-    try {
-      Frame frame = reader.Read(i);
-      if (fusion.color_camera()) {
-        RegisterFrame(fusion.camera(), *fusion.color_camera(), &frame);
+  std::mutex segmenting;
+  const auto estimated = [&](Segmenter* segmenter) {
+    const auto read = [&](int i) -> std::optional<Frame> {
+      try {
+        Frame frame = reader.Read(i);
+        std::vector<InstanceMask> masks;
+        if (segmenter != nullptr) {
+          const std::lock_guard<std::mutex> lock(segmenting);
+          masks = segmenter->Preview(frame);
+        }
+        if (fusion.color_camera()) {
+          RegisterFrame(fusion.camera(), *fusion.color_camera(), &frame,
+                        &masks);
+        }
+        LeaveNonRigidOut(masks, labels, &frame);
+        return frame;
+      } catch (const InputError&) {  // The run says so when it gets there.
+        return std::nullopt;
       }
-      return frame;
-    } catch (const InputError&) {  // The run says so when it gets there.
-      return std::nullopt;
-    }
+    };
+    return EstimateRollingShutter(read, reader.size(), fusion.camera());
   };
-  const RollingShutterEstimate estimate =
-      EstimateRollingShutter(read, reader.size(), fusion.camera());
+  // Somebody who walks by looks like a camera that turns. Masks may take long,
+  // so they are asked for where something was found.
+  RollingShutterEstimate estimate = estimated(nullptr);
+  if (!estimate.IsNeeded()) return;
+  if (fusion.segmenter() != nullptr) estimate = estimated(fusion.segmenter());
   if (!estimate.IsNeeded()) return;
   // The next image does not wait for its rows.
   fusion.set_rolling_shutter(std::min(estimate.seconds, estimate.interval));

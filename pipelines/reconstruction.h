@@ -19,7 +19,7 @@ struct Reconstruction {
   /// Looks at all images first, unless bad ones may be skipped. Unless the
   /// options tell where the colour camera is, it is estimated, and used if the
   /// images are certainly not registered; likewise, whether rows were exposed
-  /// one after the other.
+  /// one after the other, of what `labels` do not call non-rigid.
   ///
   /// @throw InputError if the sequence or an option cannot be used, or names
   ///     what `registries` do not hold.
@@ -35,7 +35,7 @@ struct Reconstruction {
 
  private:
   void FindColorCamera();
-  void FindRollingShutter();
+  void FindRollingShutter(const LabelTable& labels);
 };
 
 }  // namespace splitfusion

@@ -151,7 +151,7 @@ void SplitFusion::Split(const PreparedFrame& prepared, FrameReport* report) {
   background_map_ = RenderBackground(surfaces_, camera_, options_.render_stride,
                                      options_.ray_cast);
   report->render_seconds += stopwatch.Restart();
-  if (segmenter_ == nullptr || !options_.split_scene) return;
+  if (segmenter() == nullptr) return;
   SurfacePrediction prediction =
       ToPrediction(rendering_, background_map_, camera_);
   prediction.world_from_camera = WorldFromCamera();

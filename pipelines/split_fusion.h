@@ -52,8 +52,7 @@ class SplitFusion {
   /// another thread while the frame before is processed. Frames in order, one
   /// at a time.
   PreparedFrame Prepare(const Frame& frame) const {
-    return PrepareFrame(camera_, frame, options_.point_map,
-                        options_.split_scene ? segmenter_.get() : nullptr,
+    return PrepareFrame(camera_, frame, options_.point_map, segmenter(),
                         color_camera_);
   }
   /// The same without detections, for a pass over frames that are done.
@@ -101,6 +100,10 @@ class SplitFusion {
   void set_rolling_shutter(double seconds) { rolling_shutter_ = seconds; }
   /// That time, seconds.
   double rolling_shutter() const { return rolling_shutter_; }
+  /// Null if nothing is split off.
+  Segmenter* segmenter() const {
+    return options_.split_scene ? segmenter_.get() : nullptr;
+  }
   /// Options in use.
   const PipelineOptions& options() const { return options_; }
   /// What is minimised.

@@ -117,6 +117,9 @@ ExportOptions Options(const std::string& kind) {
 }
 
 void SayWhatIsLeftOut(const ExportScene& scene) {
+  for (const std::string& name : scene.absent) {
+    std::cout << name << " is left out: no vertex, or in none of the frames\n";
+  }
   std::size_t left_out = 0, shown = 0;
   for (const ExportSurface& surface : scene.surfaces) {
     left_out += static_cast<std::size_t>(surface.stretched_triangles);

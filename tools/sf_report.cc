@@ -1,6 +1,7 @@
 // Writes one page about finished runs.
 
 #include <gflags/gflags.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -134,7 +135,11 @@ void WritePage(const std::vector<ReportedRun>& runs,
   }
   const bool media =
       FLAGS_media == "auto" ? runs.size() == 1 : FLAGS_media == "all";
-  const std::string page = HtmlReport(runs, {media, media}, solvers);
+  std::vector<std::string> left_out;
+  const std::string page = HtmlReport(runs, {media, media}, solvers, &left_out);
+  for (const std::string& line : left_out) {
+    LOG(WARNING) << line << ": its surfaces are left out";
+  }
   WriteFileAtomically(FLAGS_output, [&](std::ostream& out) { out << page; });
   std::cout << FLAGS_output << ": " << runs.size()
             << (runs.size() == 1 ? " run\n" : " runs\n");

@@ -3,27 +3,18 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <string>
-#include <system_error>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/temporary_files_folder.h"
 
 namespace splitfusion {
 namespace {
 
-std::string SpoolFolder() {
-  std::error_code error;
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path(error);
-  return error ? "/tmp" : folder.string();
-}
-
 [[noreturn]] void FailSpooling(const std::string& what) {
-  throw InputError(SpoolFolder() + ": temporary file cannot be " + what + ": " +
-                   std::strerror(errno) +
+  throw InputError(TemporaryFilesFolder() + ": temporary file cannot be " +
+                   what + ": " + std::strerror(errno) +
                    ": expected a folder with room (TMPDIR)");
 }
 
@@ -35,7 +26,7 @@ SpoolFile::~SpoolFile() {
 
 std::uint64_t SpoolFile::Append(const void* data, std::size_t bytes) {
   if (descriptor_ < 0) {
-    std::string path = SpoolFolder() + "/splitfusion-XXXXXX";
+    std::string path = TemporaryFilesFolder() + "/splitfusion-XXXXXX";
     descriptor_ = mkstemp(path.data());
     if (descriptor_ < 0) FailSpooling("made");
     unlink(path.c_str());

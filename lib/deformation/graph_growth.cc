@@ -186,7 +186,7 @@ void GraphOptions::List(OptionList* list) {
   list->Number("confirmed_frames", &confirmed_frames, Range::AtLeast(0),
                "frames",
                "A node of a deforming surface is confirmed once it was seen in "
-               "so many frames.");
+               "so many frames; 0: from the first one.");
   list->Number("unconfirmed_frames", &unconfirmed_frames, Range::AtLeast(1),
                "frames",
                "A node that is not confirmed is forgotten once the surface "

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -320,6 +321,10 @@ MotionHistory ReadMotions(const std::string& path, int* nodes) {
                     EndOfFrames(path, version, bytes));
   const auto frames = reader.Read<std::uint32_t>();
   const auto count = reader.Read<std::uint32_t>();
+  if (count > std::numeric_limits<std::int32_t>::max()) {
+    throw InputError(path + ": " + std::to_string(count) +
+                     " nodes: expected fewer: the file is damaged");
+  }
   MotionHistory history;
   for (std::uint32_t i = 0; i < frames; ++i) {
     FrameMotions frame = ReadFrame(path, version, count, &reader);

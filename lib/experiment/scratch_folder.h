@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/temporary_files_folder.h"
 
 namespace splitfusion {
 
@@ -16,8 +17,7 @@ class ScratchFolder {
  public:
   /// @throw InputError if it cannot be made.
   ScratchFolder() {
-    path_ =
-        (std::filesystem::temp_directory_path() / "sf_batch_XXXXXX").string();
+    path_ = TemporaryFilesFolder() + "/sf_batch_XXXXXX";
     if (mkdtemp(path_.data()) == nullptr) {
       throw InputError(path_ + ": cannot be made; expected a TMPDIR to write");
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -233,10 +234,13 @@ ExportScene ReadExportScene(const std::string& run,
   for (RecordedSurface& surface : recorded.surfaces) {
     if (wanted.empty() ||
         std::find(wanted.begin(), wanted.end(), surface.id) != wanted.end()) {
-      for (ExportSurface& one :
-           SurfacesOf(surface, scene.frames, absences, options)) {
-        scene.surfaces.push_back(std::move(one));
+      std::vector<ExportSurface> shown =
+          SurfacesOf(surface, scene.frames, absences, options);
+      if (shown.empty()) {
+        scene.absent.push_back(
+            RunPaths::SurfaceName(surface.id, surface.label));
       }
+      std::move(shown.begin(), shown.end(), std::back_inserter(scene.surfaces));
     }
     surface = {};  // Its motions take much memory.
   }

@@ -50,6 +50,8 @@ struct ExportScene {
   std::vector<ExportFrame> frames;      ///< By index.
   std::optional<PinholeCamera> camera;  ///< If the run has its intrinsics.
   std::vector<ExportSurface> surfaces;  ///< By id, those of a surface in time.
+  /// Names of surfaces without a vertex, or in none of the frames.
+  std::vector<std::string> absent;
 
   /// Seconds since the first frame.
   double TimeOf(std::size_t place) const {

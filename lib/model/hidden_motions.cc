@@ -191,8 +191,13 @@ class Window {
     }
   }
 
-  /// Second differences in time at frame f with a place that is sought; what
-  /// lies behind the window is taken for known.
+  /// Whether a place beyond the window will be sought by the next one.
+  bool IsUnknownBeyond(int frame, int node) const {
+    return frame >= end_ && motions_.states[frame][node].hidden;
+  }
+
+  /// Second differences in time at frame f with a place that is sought, of
+  /// three places of which none is unknown beyond the window.
   template <typename Visit>
   void ForEachDifference(const Visit& visit) const {
     for (int f = std::max(1, begin_ - 1);
@@ -201,6 +206,7 @@ class Window {
           SecondDifference(motions_.indices[f - 1], motions_.indices[f],
                            motions_.indices[f + 1]);
       for (int i = 0; i < motions_.nodes(); ++i) {
+        if (IsUnknownBeyond(f, i) || IsUnknownBeyond(f + 1, i)) continue;
         const std::array<int, 3> numbers = NumbersAt(f, i);
         if (std::any_of(numbers.begin(), numbers.end(),
                         [](int number) { return number >= 0; })) {
@@ -254,7 +260,7 @@ class Window {
 /// Finds what is hidden in frames [begin, end); kept is what is before `kept`.
 RefinedWindow Refine(int begin, int end, int kept,
                      const HiddenMotionOptions& options, PartMotions* motions) {
-  constexpr int kMaxIterations = 10;  // Speed: 30 move nothing more.
+  constexpr int kMaxIterations = 30;  // Speed: ten are seldom needed.
   constexpr double kSettled = 1e-4;   // Maths. Metres.
   Window window(motions, begin, end, options.smoothness);
   RefinedWindow report;

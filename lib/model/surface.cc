@@ -14,6 +14,7 @@
 #include "splitfusion/lib/geometry/triangle_corners.h"
 #include "splitfusion/lib/model/canonical_places.h"
 #include "splitfusion/lib/model/observe_surface.h"
+#include "splitfusion/lib/model/surface_parts.h"
 #include "splitfusion/lib/tsdf/forget_voxels.h"
 #include "splitfusion/lib/tsdf/release_blocks.h"
 
@@ -227,6 +228,21 @@ std::vector<char> Surface::NodesToForget() const {
   return nodes;
 }
 
+/// Keeps what some nodes carry for the end.
+void Surface::Retire(const std::vector<char>& nodes) {
+  if (history_.empty()) return;
+  TriangleMesh shown = mesh_;
+  shown.triangles = TrianglesOfLargePieces(mesh_, options_.min_piece_area);
+  const int now = history_.frame(history_.size() - 1);
+  for (SurfacePart& part :
+       PartsOf(shown, mesh_skinning_, *index_, graph_, nodes, now)) {
+    MotionLog motions = history_.Part(part.nodes, part.first_frame);
+    if (motions.empty()) continue;
+    retired_.Add(std::move(part.mesh), std::move(part.graph),
+                 std::move(motions));
+  }
+}
+
 int Surface::ForgetRefuted() {
   const std::vector<char> nodes = NodesToForget();
   const auto count =
@@ -234,16 +250,7 @@ int Surface::ForgetRefuted() {
   if (count == 0 || count < graph_options_.refuted_share * graph_.size()) {
     return 0;
   }
-  if (!history_.empty()) {
-    TriangleMesh shown = mesh_;
-    shown.triangles = TrianglesOfLargePieces(mesh_, options_.min_piece_area);
-    SurfacePart part = PartOf(shown, mesh_skinning_.supports(), graph_, nodes);
-    MotionLog motions = history_.Part(part.nodes, part.first_frame);
-    if (!motions.empty()) {
-      retired_.Add(std::move(part.mesh), std::move(part.graph),
-                   std::move(motions));
-    }
-  }
+  Retire(nodes);
   ForgetVoxels(graph_, *index_, nodes, &volume_);
   refuted_.Forget(nodes);
   unconfirmed_.Forget(nodes);

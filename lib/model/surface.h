@@ -177,6 +177,7 @@ class Surface {
   int FuseWarped(const LiveView& live, DepthObservation* observation);
   void ReleaseBlocks();
   std::vector<char> NodesToForget() const;
+  void Retire(const std::vector<char>& nodes);
   int ForgetRefuted();
   void UpdateMeshAndGraph(bool retie);
   void UpdateGraphOverMesh(bool retie);

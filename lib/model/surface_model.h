@@ -6,7 +6,6 @@
 
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_history.h"
-#include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
 namespace splitfusion {
@@ -20,23 +19,6 @@ struct SurfaceModel {
 
 /// What is kept of every surface, by id.
 using SurfaceModels = std::map<int, SurfaceModel>;
-
-/// A part of a surface.
-struct SurfacePart {
-  TriangleMesh mesh;        ///< Canonical frame, metres.
-  DeformationGraph graph;   ///< Of its nodes.
-  std::vector<char> nodes;  ///< Of every one of the surface whether it is.
-  int first_frame = 0;      ///< In which any of it was first seen.
-};
-
-/// The part of a surface that some nodes carry: the triangles with a vertex
-/// whose nearest node is one of `of_nodes` (of every node whether it is), those
-/// beside them, and what Eq. 3 needs for them. `supports`: of the mesh's
-/// vertices.
-SurfacePart PartOf(const TriangleMesh& mesh,
-                   const std::vector<SkinningSupport>& supports,
-                   const DeformationGraph& graph,
-                   const std::vector<char>& of_nodes);
 
 /// One model out of the parts of a surface; the last one is in use to the end,
 /// the others, which were refuted or replaced (Surface::Reanchor), in the

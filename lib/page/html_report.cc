@@ -172,24 +172,26 @@ std::string Options(const ReportedRun& run) {
   return html + Details("Energy and all options", KeyTable(run.options));
 }
 
-void AddViewer(const ReportedRun& run, HtmlPage* page) {
+void AddViewer(const ReportedRun& run, HtmlPage* page,
+               std::vector<std::string>* left_out) {
   try {
     page->AddViewer(SceneOfRun(run), run.name);
   } catch (const InputError& error) {
     page->Add("<p>No viewer: " + HtmlEscaped(error.what()) + "</p>\n");
+    if (left_out != nullptr) left_out->push_back(error.what());
   }
 }
 
 /// A run with all its charts; without them if `brief`.
 void AddRun(const ReportedRun& run, const ReportContent& content, bool brief,
-            HtmlPage* page) {
+            HtmlPage* page, std::vector<std::string>* left_out) {
   page->Add("<section><h2>" + HtmlEscaped(run.name) + "</h2>\n" +
             KeyTable(FactsOf(run)));
   const Json figures = HeadlineOf(run);
   if (!figures.empty()) page->Add(Heading("Evaluation") + KeyTable(figures));
   page->Add(Options(run) + Heading("Surfaces") +
             RowTable(WithoutLists(run.summary.at("surfaces"))));
-  if (content.viewer) AddViewer(run, page);
+  if (content.viewer) AddViewer(run, page, left_out);
   if (!brief) AddCharts(run, page);
   if (content.pictures) page->Add(Pictures(run.pictures));
   page->Add(Details("Versions", KeyTable(run.summary.at("versions"))) +
@@ -200,12 +202,13 @@ void AddRun(const ReportedRun& run, const ReportContent& content, bool brief,
 
 std::string HtmlReport(const std::vector<ReportedRun>& runs,
                        const ReportContent& content,
-                       const std::vector<ReportedSolvers>& solvers) {
+                       const std::vector<ReportedSolvers>& solvers,
+                       std::vector<std::string>* left_out) {
   HtmlPage page;
   page.Add("<h1>SplitFusion report</h1>\n");
   if (runs.size() > 1) AddComparison(runs, &page);
   for (const ReportedRun& run : runs) {
-    AddRun(run, content, runs.size() > kFullRuns, &page);
+    AddRun(run, content, runs.size() > kFullRuns, &page, left_out);
   }
   for (const ReportedSolvers& one : solvers) {
     page.Add("<h2>" + HtmlEscaped(one.name) + "</h2>\n<div class=\"charts\">");

@@ -23,9 +23,13 @@ struct ReportContent {
 /// frames (lost frames and costs that are not finite are marked red); at the
 /// end the figures of `solvers`. Numbers are rounded for people. Where the
 /// project was built without node, charts are drawings, and there is no viewer.
+///
+/// `left_out`: receives a line for each run whose surfaces cannot be shown, as
+/// a file of them is missing or broken; the page says it as well.
 std::string HtmlReport(const std::vector<ReportedRun>& runs,
                        const ReportContent& content = {},
-                       const std::vector<ReportedSolvers>& solvers = {});
+                       const std::vector<ReportedSolvers>& solvers = {},
+                       std::vector<std::string>* left_out = nullptr);
 
 /// Writes RUN/report.html. `summary`: the value of summary.json.
 ///

@@ -19,4 +19,8 @@ std::vector<InstanceMask> RecordingSegmenter::Segment(const Frame& frame) {
   return instances;
 }
 
+std::vector<InstanceMask> RecordingSegmenter::Preview(const Frame& frame) {
+  return source_->Preview(frame);
+}
+
 }  // namespace splitfusion

@@ -24,6 +24,11 @@ class RecordingSegmenter : public Segmenter {
   /// @throw InputError if a file cannot be written, or as the source does.
   std::vector<InstanceMask> Segment(const Frame& frame) override;
 
+  /// Writes nothing.
+  ///
+  /// @throw InputError as the source does.
+  std::vector<InstanceMask> Preview(const Frame& frame) override;
+
  private:
   std::unique_ptr<Segmenter> source_;
   std::string folder_;

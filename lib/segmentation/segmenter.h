@@ -30,6 +30,13 @@ class Segmenter {
   ///
   /// @throw InputError on a broken mask file or network output.
   virtual std::vector<InstanceMask> Segment(const Frame& frame) = 0;
+
+  /// The same of a frame before its turn: nothing is recorded.
+  ///
+  /// @throw InputError as Segment().
+  virtual std::vector<InstanceMask> Preview(const Frame& frame) {
+    return Segment(frame);
+  }
 };
 
 }  // namespace splitfusion

@@ -10,7 +10,15 @@ UndistortingSegmenter::UndistortingSegmenter(
     : source_(std::move(source)), undistortion_(std::move(undistortion)) {}
 
 std::vector<InstanceMask> UndistortingSegmenter::Segment(const Frame& frame) {
-  std::vector<InstanceMask> instances = source_->Segment(frame);
+  return Undistorted(source_->Segment(frame));
+}
+
+std::vector<InstanceMask> UndistortingSegmenter::Preview(const Frame& frame) {
+  return Undistorted(source_->Preview(frame));
+}
+
+std::vector<InstanceMask> UndistortingSegmenter::Undistorted(
+    std::vector<InstanceMask> instances) const {
   for (InstanceMask& instance : instances) {
     instance.mask = undistortion_->Mask(instance.mask);
   }

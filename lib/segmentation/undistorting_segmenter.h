@@ -20,7 +20,13 @@ class UndistortingSegmenter : public Segmenter {
   /// @throw InputError as the source does.
   std::vector<InstanceMask> Segment(const Frame& frame) override;
 
+  /// @throw InputError as the source does.
+  std::vector<InstanceMask> Preview(const Frame& frame) override;
+
  private:
+  std::vector<InstanceMask> Undistorted(
+      std::vector<InstanceMask> instances) const;
+
   std::shared_ptr<Segmenter> source_;
   std::shared_ptr<const Undistortion> undistortion_;
 };

@@ -81,6 +81,15 @@ double Require(const std::string& path, const KeyValues& values,
                    KeyList());
 }
 
+int RequireSize(const std::string& path, const KeyValues& values,
+                const std::string& key) {
+  constexpr double kMost = 1e6;  // Format: none has more.
+  const double size = Require(path, values, key);
+  CheckOption(size >= 1 && size <= kMost && size == std::floor(size),
+              path + ": " + key, size, "a number of pixels");
+  return static_cast<int>(size);
+}
+
 double ValueOr(const KeyValues& values, const std::string& key,
                double otherwise) {
   const auto found = values.find(key);
@@ -109,8 +118,8 @@ std::optional<ColorCamera> ColorCameraOfKeys(const std::string& path,
     return ValueOr(values, kColorPrefix + key, otherwise);
   };
   ColorCamera color;
-  color.width = static_cast<int>(require("width"));
-  color.height = static_cast<int>(require("height"));
+  color.width = RequireSize(path, values, kColorPrefix + "width");
+  color.height = RequireSize(path, values, kColorPrefix + "height");
   color.fx = require("fx");
   color.fy = require("fy");
   color.cx = require("cx");
@@ -188,8 +197,8 @@ void WriteCalibration(const std::string& path, const Calibration& calibration) {
 Calibration ReadCalibrationKeys(const std::string& path) {
   const KeyValues values = ReadKeys(path);
   Calibration result;
-  result.camera.width = static_cast<int>(Require(path, values, "width"));
-  result.camera.height = static_cast<int>(Require(path, values, "height"));
+  result.camera.width = RequireSize(path, values, "width");
+  result.camera.height = RequireSize(path, values, "height");
   result.camera.fx = Require(path, values, "fx");
   result.camera.fy = Require(path, values, "fy");
   result.camera.cx = Require(path, values, "cx");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/number_text.h"
@@ -14,14 +15,20 @@ namespace {
 /// farther away.
 constexpr float kNearPixel = 0.5f;
 
+/// Share of an undistorted image that has a pixel: a check of the coefficients.
+constexpr double kLeastSeen = 0.5;  // Format.
+
+/// Also false for what is not a number.
+bool IsInside(const cv::Vec2f& place, const cv::Size& size) {
+  return place[0] > -1 && place[1] > -1 &&
+         place[0] < static_cast<float>(size.width) &&
+         place[1] < static_cast<float>(size.height);
+}
+
 /// The nearest pixel of a place with a measurement, no farther than the nearest
 /// of all may be; 0 if there is none.
 float NearestMeasured(const cv::Mat_<float>& depth, const cv::Vec2f& place) {
-  // Also false for what is not a number.
-  const bool is_inside = place[0] > -1 && place[1] > -1 &&
-                         place[0] < static_cast<float>(depth.cols) &&
-                         place[1] < static_cast<float>(depth.rows);
-  if (!is_inside) return 0;
+  if (!IsInside(place, depth.size())) return 0;
   const int u0 = cvFloor(place[0]), v0 = cvFloor(place[1]);
   float best = 0, least = kNearPixel * 1.001f;  // For rounding.
   for (int v = std::max(v0, 0); v <= std::min(v0 + 1, depth.rows - 1); ++v) {
@@ -72,14 +79,23 @@ void LensDistortion::Check() const {
 Undistortion::Undistortion(const PinholeCamera& camera,
                            const LensDistortion& distortion)
     : places_(camera.height, camera.width) {
+  std::size_t inside = 0;
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       const cv::Point2d place = distortion.Distorted(
           {(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy});
       places_(v, u) = {static_cast<float>(camera.fx * place.x + camera.cx),
                        static_cast<float>(camera.fy * place.y + camera.cy)};
+      inside += IsInside(places_(v, u), places_.size());
     }
   }
+  if (kLeastSeen * static_cast<double>(places_.total()) <=
+      static_cast<double>(inside)) {
+    return;
+  }
+  throw InputError("lens " + distortion.Text() + ": " + std::to_string(inside) +
+                   " of " + std::to_string(places_.total()) +
+                   " pixels were seen through it: expected half or more");
 }
 
 cv::Mat Undistortion::Color(const cv::Mat& image) const {

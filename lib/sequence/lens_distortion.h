@@ -43,6 +43,8 @@ struct LensDistortion {
 class Undistortion {
  public:
   /// `camera`: of the distorted images, and of those that come out.
+  ///
+  /// @throw InputError if fewer than half of the pixels were seen through it.
   Undistortion(const PinholeCamera& camera, const LensDistortion& distortion);
 
   /// A colour image, HxW 8UC3: bilinear, black beyond the image.

@@ -2,32 +2,51 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 namespace splitfusion {
 namespace {
 
-/// Whether the node nearest to a point (the one with the greatest weight of
-/// Eq. 3), or another one no farther than the node spacing, had been seen. Such
-/// a point had a node near enough, and the graph did not grow over it. `known`:
-/// whether it is recorded when nodes were seen first; else all were.
-bool IsSeen(const Eigen::Vector3f& point, const Skinning& skinning,
-            const DeformationGraph& graph, bool known, int frame) {
+/// Calls something for the node nearest to a point (the one with the greatest
+/// weight of Eq. 3), and for others no farther than the node spacing. Such a
+/// point had a node near enough, and the graph did not grow over it.
+template <typename Visit>
+void ForEachNear(const Eigen::Vector3f& point, const Skinning& skinning,
+                 const DeformationGraph& graph, const Visit& visit) {
   const auto begin = skinning.weights.begin();
   const auto nearest = std::max_element(begin, begin + skinning.count) - begin;
   for (int k = 0; k < skinning.count; ++k) {
     const int node = skinning.nodes[k];
-    if (!graph.IsInUse(node, frame) ||
-        (known && graph.first_seen[node] > frame)) {
-      continue;
-    }
     const double distance =
         (graph.positions[node] - point.cast<double>()).norm();
-    if (k == nearest || distance < graph.node_spacing) return true;
+    if (k == nearest || distance < graph.node_spacing) visit(node);
   }
-  return false;
+}
+
+/// Whether a node near a point had been seen. `known`: whether it is recorded
+/// when nodes were seen first; else all were.
+bool IsSeen(const Eigen::Vector3f& point, const Skinning& skinning,
+            const DeformationGraph& graph, bool known, int frame) {
+  bool seen = false;
+  ForEachNear(point, skinning, graph, [&](int node) {
+    seen = seen || (graph.IsInUse(node, frame) &&
+                    (!known || graph.first_seen[node] <= frame));
+  });
+  return seen;
 }
 
 }  // namespace
+
+int FirstSight(const Eigen::Vector3f& point, const Skinning& skinning,
+               const DeformationGraph& graph) {
+  int first = std::numeric_limits<int>::max();
+  ForEachNear(point, skinning, graph, [&](int node) {
+    if (node < static_cast<int>(graph.first_seen.size())) {
+      first = std::min(first, graph.first_seen[node]);
+    }
+  });
+  return first;
+}
 
 std::vector<Eigen::Vector3i> SeenTriangles(
     const TriangleMesh& mesh, const std::vector<Skinning>& skinning,

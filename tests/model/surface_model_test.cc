@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <string>
 
-#include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/visibility/seen_triangles.h"
 #include "support/sample_graphs.h"
@@ -102,46 +101,6 @@ TEST(JoinModels, ShowsARefutedPartBesideTheRestUntilItsEnd) {
         (frame.frame < 5 ? 2 : 1) * rest.mesh.triangles.size())
         << frame.frame;
   }
-}
-
-TEST(PartOf, IsCarriedAsItWas) {
-  SurfaceModel plate = MovingPlate(2, 4, 0.9);
-  for (int i = 0; i < plate.graph.size(); ++i) {
-    plate.graph.motions[i].translation.z() = 0.1 * plate.graph.positions[i].x();
-  }
-  const SkinningIndex index(plate.graph, 6);
-  const MeshSkinning skinning(index, plate.mesh.vertices);
-  std::vector<char> nodes(plate.graph.size());
-  for (int i = 0; i < plate.graph.size(); ++i) {
-    nodes[i] = plate.graph.positions[i].x() > 0.7;
-  }
-  const SurfacePart part =
-      PartOf(plate.mesh, skinning.supports(), plate.graph, nodes);
-  ASSERT_GT(part.mesh.triangles.size(), 10u);
-  EXPECT_LT(part.mesh.triangles.size(), plate.mesh.triangles.size() / 2);
-  EXPECT_EQ(part.mesh.normals.size(), part.mesh.vertices.size());
-  EXPECT_LT(part.graph.size(), plate.graph.size());
-  EXPECT_EQ(std::count(part.nodes.begin(), part.nodes.end(), true),
-            part.graph.size());
-  EXPECT_EQ(part.first_frame, 2);
-  const WarpField warp(part.graph), whole(plate.graph);
-  const SkinningIndex part_index(part.graph, 6);
-  for (const Eigen::Vector3f& v : part.mesh.vertices) {
-    EXPECT_LT((warp.WarpPoint(part_index.Skin(v), v) -
-               whole.WarpPoint(index.Skin(v), v))
-                  .norm(),
-              1e-6f);
-  }
-}
-
-TEST(PartOf, NoNodesAreNoPart) {
-  const SurfaceModel plate = MovingPlate(2, 4);
-  const MeshSkinning skinning(SkinningIndex(plate.graph, 6),
-                              plate.mesh.vertices);
-  const SurfacePart part = PartOf(plate.mesh, skinning.supports(), plate.graph,
-                                  std::vector<char>(plate.graph.size(), false));
-  EXPECT_TRUE(part.mesh.triangles.empty());
-  EXPECT_EQ(part.graph.size(), 0);
 }
 
 TEST(IsInUse, IsFromTheFirstFrameOfAPartUntilItsEnd) {

@@ -1,0 +1,37 @@
+#ifndef SPLITFUSION_LIB_MODEL_SURFACE_PARTS_H_
+#define SPLITFUSION_LIB_MODEL_SURFACE_PARTS_H_
+
+#include <vector>
+
+#include "splitfusion/lib/deformation/deformation_graph.h"
+#include "splitfusion/lib/deformation/mesh_skinning.h"
+#include "splitfusion/lib/geometry/triangle_mesh.h"
+
+namespace splitfusion {
+
+/// A part of a surface.
+struct SurfacePart {
+  TriangleMesh mesh;        ///< Canonical frame, metres.
+  DeformationGraph graph;   ///< Of its nodes.
+  std::vector<char> nodes;  ///< Of every one of the surface whether it is.
+  int first_frame = 0;      ///< In which any of it was first seen.
+};
+
+/// What some nodes of a surface carry: the triangles with a vertex whose
+/// nearest node is one of `of_nodes` (of every node whether it is), and those
+/// beside them. They are apart by how many frames before `now` they were seen
+/// first (FirstSight()), by powers of two, and have no other nodes than Eq. 3
+/// asks for: what is kept of a part are the motions of its nodes since its
+/// first sight, and most of what is refuted is young. What was never seen is in
+/// none.
+///
+/// `index`: of `graph`; `skinning`: of the mesh's vertices, by it.
+std::vector<SurfacePart> PartsOf(const TriangleMesh& mesh,
+                                 const MeshSkinning& skinning,
+                                 const SkinningIndex& index,
+                                 const DeformationGraph& graph,
+                                 const std::vector<char>& of_nodes, int now);
+
+}  // namespace splitfusion
+
+#endif  // SPLITFUSION_LIB_MODEL_SURFACE_PARTS_H_
