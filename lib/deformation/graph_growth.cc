@@ -186,11 +186,12 @@ void GraphOptions::List(OptionList* list) {
   list->Number("confirmed_frames", &confirmed_frames, Range::AtLeast(0),
                "frames",
                "A node of a deforming surface is confirmed once it was seen in "
-               "so many frames; 0: from the first one.");
+               "so many frames; 0: at once, and for ever.");
   list->Number("unconfirmed_frames", &unconfirmed_frames, Range::AtLeast(1),
                "frames",
-               "A node that is not confirmed is forgotten once the surface "
-               "itself has hidden it in so many frames on end.");
+               "A node is forgotten once the surface itself has hidden it in "
+               "so many frames without a sight; one that was seen in n times "
+               "the frames that confirm it, in n times as many.");
 }
 
 void GraphOptions::Check() const { CheckOptions(*this); }

@@ -39,11 +39,12 @@ struct GraphOptions {
   /// Refuted nodes wait until they are so many, as a part of the graph's;
   /// meanwhile they are carved as the rest.
   double refuted_share = 0.02;
-  /// A node is confirmed once it was seen in so many frames; 0: at once.
+  /// A node is confirmed once it was seen in so many frames; 0: at once, and
+  /// for ever.
   int confirmed_frames = 10;
-  /// What a node carries that is not confirmed is forgotten, too, once the
-  /// surface itself has hidden it in so many frames on end, see
-  /// UnconfirmedNodes.
+  /// What a node carries is forgotten, too, once the surface itself has hidden
+  /// it in so many frames without a sight; of a confirmed one in as many times
+  /// more as it was seen in more frames than that took, see UnconfirmedNodes.
   int unconfirmed_frames = 30;
 
   /// Names, ranges and meaning of all fields.

@@ -321,10 +321,6 @@ MotionHistory ReadMotions(const std::string& path, int* nodes) {
                     EndOfFrames(path, version, bytes));
   const auto frames = reader.Read<std::uint32_t>();
   const auto count = reader.Read<std::uint32_t>();
-  if (count > std::numeric_limits<std::int32_t>::max()) {
-    throw InputError(path + ": " + std::to_string(count) +
-                     " nodes: expected fewer: the file is damaged");
-  }
   MotionHistory history;
   for (std::uint32_t i = 0; i < frames; ++i) {
     FrameMotions frame = ReadFrame(path, version, count, &reader);
@@ -335,6 +331,10 @@ MotionHistory ReadMotions(const std::string& path, int* nodes) {
     throw InputError(path + ": " + std::to_string(reader.left()) +
                      " bytes too many for " + std::to_string(frames) +
                      " frames of " + std::to_string(count) + " nodes");
+  }
+  if (count > std::numeric_limits<std::int32_t>::max()) {
+    throw InputError(path + ": " + std::to_string(count) +
+                     " nodes: expected fewer: the file is damaged");
   }
   if (nodes != nullptr) *nodes = static_cast<int>(count);
   return history;

@@ -77,6 +77,17 @@ FrameMotions MotionLog::At(int i) const {
   return i < spooled_ ? Load(i) : recent_[i - spooled_];
 }
 
+/// Of every node that there ever was whether it is one of those that there are
+/// now, or one of which they were blended.
+std::vector<char> MotionLog::Needed() const {
+  std::vector<char> needed(nodes_ever_, false);
+  for (const int number : *numbers_) needed[number] = true;
+  for (const Births& births : births_) {
+    for (const int carrier : births.nodes->carriers()) needed[carrier] = true;
+  }
+  return needed;
+}
+
 FrameMotions MotionLog::Load(int i) const {
   const Block& block = *blocks_[BlockOf(i)];
   const SpooledFrame& head = HeadOf(i);
@@ -84,22 +95,40 @@ FrameMotions MotionLog::Load(int i) const {
   const std::size_t seen_from = numbers.size() * sizeof(SpooledMotion);
   std::vector<char> bytes(seen_from + (head.has_seen ? numbers.size() : 0));
   file_->Read(head.offset, bytes.data(), bytes.size());
-  std::vector<NodeMotion> motions(block.nodes_ever);
-  std::vector<char> seen(nodes_ever_, false);
+  // Of nodes that matter: most that there ever were are none of a part's.
+  const std::vector<char> needed = Needed();
+  std::vector<int> place(nodes_ever_, -1);
+  std::vector<NodeMotion> motions;
+  std::vector<char> seen;
+  const auto add = [&](int number, const NodeMotion& motion, char was_seen) {
+    if (needed[number] == 0) return;
+    place[number] = static_cast<int>(motions.size());
+    motions.push_back(motion);
+    seen.push_back(was_seen);
+  };
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    motions[numbers[k]] = MotionFrom(&bytes[k * sizeof(SpooledMotion)]);
-    if (head.has_seen) seen[numbers[k]] = bytes[seen_from + k];
+    add(numbers[k], MotionFrom(&bytes[k * sizeof(SpooledMotion)]),
+        static_cast<char>(head.has_seen ? bytes[seen_from + k] : false));
   }
   for (const Births& births : births_) {
     if (births.first < block.nodes_ever) continue;
-    motions.resize(births.first);
-    births.nodes->Append(&motions);
+    std::vector<NodeMotion> of_carriers;
+    for (const int carrier : births.nodes->carriers()) {
+      of_carriers.push_back(motions[place[carrier]]);
+    }
+    const std::vector<NodeMotion> blended = births.nodes->Blended(of_carriers);
+    for (std::size_t i = 0; i < blended.size(); ++i) {
+      add(births.first + static_cast<int>(i), blended[i], false);
+    }
   }
   FrameMotions frame{head.index, head.tracked, {}, {}};
-  for (const int number : *numbers_) frame.motions.push_back(motions[number]);
+  for (const int number : *numbers_) {
+    frame.motions.push_back(motions[place[number]]);
+  }
   // As of frames in memory: of those that grew it is known of every node.
   if (head.has_seen || block.changes != changes_) {
-    for (const int number : *numbers_) frame.seen.push_back(seen[number]);
+    for (const int number : *numbers_)
+      frame.seen.push_back(seen[place[number]]);
   }
   return frame;
 }

@@ -117,6 +117,7 @@ class MotionLog {
 
   int BlockOf(int i) const;
   const SpooledFrame& HeadOf(int i) const;
+  std::vector<char> Needed() const;
   FrameMotions Load(int i) const;
   void ForgetNeedlessBirths();
   void Spool();

@@ -32,18 +32,27 @@ NodeBirths NodeBirths::Renumbered(const std::vector<int>& numbers) const {
   return births;
 }
 
-void NodeBirths::Append(std::vector<NodeMotion>* motions) const {
+std::vector<NodeMotion> NodeBirths::Blended(
+    const std::vector<NodeMotion>& motions) const {
   DeformationGraph carriers;
   carriers.positions = carrier_positions_;
-  for (const int node : carriers_) {
-    carriers.motions.push_back((*motions)[node]);
-  }
+  carriers.motions = motions;
   const WarpField warp(carriers);
-  // Histories of many frames grow so: not by twice what they need.
-  motions->reserve(motions->size() + places_.size());
+  std::vector<NodeMotion> blended;
+  blended.reserve(places_.size());
   for (std::size_t i = 0; i < places_.size(); ++i) {
-    motions->push_back(warp.BlendMotion(skinning_[i], places_[i]));
+    blended.push_back(warp.BlendMotion(skinning_[i], places_[i]));
   }
+  return blended;
+}
+
+void NodeBirths::Append(std::vector<NodeMotion>* motions) const {
+  std::vector<NodeMotion> of_carriers;
+  for (const int node : carriers_) of_carriers.push_back((*motions)[node]);
+  const std::vector<NodeMotion> blended = Blended(of_carriers);
+  // Histories of many frames grow so: not by twice what they need.
+  motions->reserve(motions->size() + blended.size());
+  motions->insert(motions->end(), blended.begin(), blended.end());
 }
 
 }  // namespace splitfusion

@@ -28,6 +28,9 @@ class NodeBirths {
   /// The same where node i has the number `numbers[i]`.
   NodeBirths Renumbered(const std::vector<int>& numbers) const;
 
+  /// The motions of the new nodes in one frame, of those of carriers() in it.
+  std::vector<NodeMotion> Blended(const std::vector<NodeMotion>& motions) const;
+
   /// Appends the motions of the new nodes to those of one frame.
   void Append(std::vector<NodeMotion>* motions) const;
 

@@ -53,23 +53,6 @@ class NearestFew {
   std::array<std::pair<float, int>, kMaxSkinningNodes + 1> entries_;
 };
 
-/// The `size` nodes of a list that are nearest to a point, which is `distance`
-/// away from the node whose list it is.
-template <typename List>
-NearestFew FewOf(const List& list, const Eigen::Vector3f& point, float distance,
-                 int size) {
-  NearestFew few(size);
-  for (std::size_t i = 0; i < list.nodes.size(); ++i) {
-    // By the triangle inequality all that follow are farther than those found.
-    if (list.distance[i] > few.Reach(distance)) break;
-    const float dx = list.x[i] - point.x();
-    const float dy = list.y[i] - point.y();
-    const float dz = list.z[i] - point.z();
-    few.Insert(dx * dx + (dy * dy + dz * dz), list.nodes[i]);
-  }
-  return few;
-}
-
 /// Orders candidates by their distance from node `center`.
 void SortByDistance(const std::vector<Eigen::Vector3f>& positions, int center,
                     std::vector<int>* nodes) {
@@ -166,7 +149,15 @@ Skinning SkinningIndex::Skin(const Eigen::Vector3f& point,
   const CandidateList& list = candidates_[support->nearest];
   const int count = static_cast<int>(list.nodes.size());
   const int used = std::min(k_, count);
-  NearestFew few = FewOf(list, point, distance, std::min(used + 1, count));
+  NearestFew few(std::min(used + 1, count));
+  for (int i = 0; i < count; ++i) {
+    // By the triangle inequality all that follow are farther than those found.
+    if (list.distance[i] > few.Reach(distance)) break;
+    const float dx = list.x[i] - point.x();
+    const float dy = list.y[i] - point.y();
+    const float dz = list.z[i] - point.z();
+    few.Insert(dx * dx + (dy * dy + dz * dz), list.nodes[i]);
+  }
   if (count > used) support->reach = few.Reach(distance);
   const float farthest = std::sqrt(few.FarthestSquared());
   const float d_max = count > used ? farthest : 2 * farthest;
@@ -182,17 +173,6 @@ Skinning SkinningIndex::Skin(const Eigen::Vector3f& point,
   }
   for (int k = 0; k < skinning.count; ++k) skinning.weights[k] /= sum;
   return skinning;
-}
-
-std::vector<int> SkinningIndex::NodesLookedAt(const Eigen::Vector3f& point,
-                                              int nearest) const {
-  const CandidateList& list = candidates_[nearest];
-  const int size = std::min(k_ + 1, static_cast<int>(list.nodes.size()));
-  const Eigen::Vector3f at(list.x[0], list.y[0], list.z[0]);  // That node.
-  const NearestFew few = FewOf(list, point, (point - at).norm(), size);
-  std::vector<int> nodes;
-  for (int i = 0; i < size; ++i) nodes.push_back(few.node(i));
-  return nodes;
 }
 
 std::vector<Skinning> SkinningIndex::Skin(

@@ -55,11 +55,6 @@ class SkinningIndex {
   /// Skinning of many canonical points, in parallel.
   std::vector<Skinning> Skin(const std::vector<Eigen::Vector3f>& points) const;
 
-  /// Nodes on which the skinning of a canonical point depends: those that carry
-  /// it, and the next one, which gives d_max. `nearest`: its nearest node.
-  std::vector<int> NodesLookedAt(const Eigen::Vector3f& point,
-                                 int nearest) const;
-
   /// Nearest node of a canonical point; `distance` (metres) may be null.
   int NearestNode(const Eigen::Vector3f& point, float* distance) const {
     return tree_.Find(point, -1, distance);

@@ -191,13 +191,8 @@ class Window {
     }
   }
 
-  /// Whether a place beyond the window will be sought by the next one.
-  bool IsUnknownBeyond(int frame, int node) const {
-    return frame >= end_ && motions_.states[frame][node].hidden;
-  }
-
-  /// Second differences in time at frame f with a place that is sought, of
-  /// three places of which none is unknown beyond the window.
+  /// Second differences in time at frame f with a place that is sought; what
+  /// lies behind the window is taken for known.
   template <typename Visit>
   void ForEachDifference(const Visit& visit) const {
     for (int f = std::max(1, begin_ - 1);
@@ -206,7 +201,6 @@ class Window {
           SecondDifference(motions_.indices[f - 1], motions_.indices[f],
                            motions_.indices[f + 1]);
       for (int i = 0; i < motions_.nodes(); ++i) {
-        if (IsUnknownBeyond(f, i) || IsUnknownBeyond(f + 1, i)) continue;
         const std::array<int, 3> numbers = NumbersAt(f, i);
         if (std::any_of(numbers.begin(), numbers.end(),
                         [](int number) { return number >= 0; })) {

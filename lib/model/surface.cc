@@ -13,6 +13,7 @@
 #include "splitfusion/lib/geometry/stretched_area.h"
 #include "splitfusion/lib/geometry/triangle_corners.h"
 #include "splitfusion/lib/model/canonical_places.h"
+#include "splitfusion/lib/model/nodes_facing.h"
 #include "splitfusion/lib/model/observe_surface.h"
 #include "splitfusion/lib/model/surface_parts.h"
 #include "splitfusion/lib/tsdf/forget_voxels.h"
@@ -201,7 +202,9 @@ int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
   std::vector<Eigen::Vector3f> warped = WarpedVertices();
   refuted_.Look(live, id_, warped, mesh_skinning(), graph_.size(),
                 options_.tsdf.truncation);
-  unconfirmed_.Look(live, id_, NodePlaces(graph_), options_.tsdf.truncation);
+  unconfirmed_.Look(live, id_, NodePlaces(graph_),
+                    NodesFacing(mesh_, mesh_skinning_.supports(), graph_),
+                    options_.tsdf.truncation);
   ReleaseBlocks();
   const int forgotten = ForgetRefuted();
   if (forgotten > 0) warped = WarpedVertices();
@@ -234,8 +237,7 @@ void Surface::Retire(const std::vector<char>& nodes) {
   TriangleMesh shown = mesh_;
   shown.triangles = TrianglesOfLargePieces(mesh_, options_.min_piece_area);
   const int now = history_.frame(history_.size() - 1);
-  for (SurfacePart& part :
-       PartsOf(shown, mesh_skinning_, *index_, graph_, nodes, now)) {
+  for (SurfacePart& part : PartsOf(shown, mesh_skinning_, graph_, nodes, now)) {
     MotionLog motions = history_.Part(part.nodes, part.first_frame);
     if (motions.empty()) continue;
     retired_.Add(std::move(part.mesh), std::move(part.graph),

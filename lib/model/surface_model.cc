@@ -1,5 +1,6 @@
 #include "splitfusion/lib/model/surface_model.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -11,27 +12,45 @@ namespace {
 /// Between canonical frames, metres; more than a node reaches.
 constexpr double kGap = 1;  // Layout.
 
-/// Extent along x of a model's nodes and vertices, metres.
-struct Extent {
-  explicit Extent(const SurfaceModel& model) {
-    for (const Eigen::Vector3d& g : model.graph.positions) Add(g.x());
-    for (const Eigen::Vector3f& v : model.mesh.vertices) Add(v.x());
+using Box = Eigen::AlignedBox3d;
+
+/// Of a model's nodes and vertices, canonical frame, metres.
+Box ExtentOf(const SurfaceModel& model) {
+  Box box;
+  for (const Eigen::Vector3d& g : model.graph.positions) box.extend(g);
+  for (const Eigen::Vector3f& v : model.mesh.vertices) {
+    box.extend(v.cast<double>());
   }
+  return box;
+}
 
-  void Add(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
+/// Where canonical frames are moved so that they lie in the cells of a cube,
+/// the first one where it is: in a row thousands of them would reach so far
+/// that single precision rounds to millimetres.
+std::vector<Eigen::Vector3d> ShiftsOf(const std::vector<SurfaceModel>& models) {
+  std::vector<Box> boxes;
+  double width = 0;
+  for (const SurfaceModel& model : models) {
+    boxes.push_back(ExtentOf(model));
+    width = std::max(width, boxes.back().sizes().maxCoeff());
   }
+  std::size_t side = 1;
+  while (side * side * side < models.size()) ++side;
+  std::vector<Eigen::Vector3d> shifts;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Eigen::Vector3d cell(static_cast<double>(i % side),
+                               static_cast<double>(i / side % side),
+                               static_cast<double>(i / side / side));
+    shifts.push_back((width + kGap) * cell + boxes[0].min() - boxes[i].min());
+  }
+  return shifts;
+}
 
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-};
-
-void AppendMesh(const TriangleMesh& mesh, double shift, TriangleMesh* joined) {
+void AppendMesh(const TriangleMesh& mesh, const Eigen::Vector3d& shift,
+                TriangleMesh* joined) {
   const int first = static_cast<int>(joined->vertices.size());
   for (const Eigen::Vector3f& v : mesh.vertices) {
-    joined->vertices.push_back(
-        v + Eigen::Vector3f(static_cast<float>(shift), 0, 0));
+    joined->vertices.push_back(v + shift.cast<float>());
   }
   joined->normals.insert(joined->normals.end(), mesh.normals.begin(),
                          mesh.normals.end());
@@ -42,7 +61,7 @@ void AppendMesh(const TriangleMesh& mesh, double shift, TriangleMesh* joined) {
   }
 }
 
-void AppendGraph(const SurfaceModel& model, double shift,
+void AppendGraph(const SurfaceModel& model, const Eigen::Vector3d& shift,
                  DeformationGraph* joined) {
   const DeformationGraph& graph = model.graph;
   const int first_node = joined->size();
@@ -51,8 +70,7 @@ void AppendGraph(const SurfaceModel& model, double shift,
       {first_node, first_frame, model.history.frames.back().frame + 1});
   joined->node_spacing = std::max(joined->node_spacing, graph.node_spacing);
   for (int i = 0; i < graph.size(); ++i) {
-    joined->positions.push_back(graph.positions[i] +
-                                Eigen::Vector3d(shift, 0, 0));
+    joined->positions.push_back(graph.positions[i] + shift);
     joined->neighbors.push_back(graph.neighbors[i]);
     for (int& j : joined->neighbors.back()) j += first_node;
     const bool known = i < static_cast<int>(graph.first_seen.size());
@@ -61,9 +79,9 @@ void AppendGraph(const SurfaceModel& model, double shift,
 }
 
 /// Takes the motions of a model in a frame of its own, behind those of the
-/// parts before: its nodes begin at `first` and were moved by `shift` along x.
-void AppendMotions(const FrameMotions& own, int first, double shift,
-                   FrameMotions* all) {
+/// parts before: its nodes begin at `first` and were moved by `shift`.
+void AppendMotions(const FrameMotions& own, int first,
+                   const Eigen::Vector3d& shift, FrameMotions* all) {
   const int count = static_cast<int>(own.motions.size());
   if (!all->ranges.empty() && all->ranges.back().end == first) {
     all->ranges.back().end += count;
@@ -71,7 +89,7 @@ void AppendMotions(const FrameMotions& own, int first, double shift,
     all->ranges.push_back({first, first + count});
   }
   for (NodeMotion motion : own.motions) {
-    motion.translation.x() -= shift;
+    motion.translation -= shift;
     all->motions.push_back(motion);
   }
   all->seen.insert(all->seen.end(), own.seen.begin(), own.seen.end());
@@ -94,14 +112,11 @@ std::map<int, bool> FramesOf(const std::vector<SurfaceModel>& models) {
 SurfaceModel JoinModels(std::vector<SurfaceModel> models) {
   if (models.size() == 1) return std::move(models.front());
   SurfaceModel joined;
-  std::vector<double> shifts;
-  double end = 0;
-  for (const SurfaceModel& model : models) {
-    const Extent extent(model);
-    shifts.push_back(shifts.empty() ? 0 : end + kGap - extent.low);
-    end = extent.high + shifts.back();
-    AppendMesh(model.mesh, shifts.back(), &joined.mesh);
-    AppendGraph(model, shifts.back(), &joined.graph);
+  const std::vector<Eigen::Vector3d> shifts = ShiftsOf(models);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    AppendMesh(models[i].mesh, shifts[i], &joined.mesh);
+    AppendGraph(models[i], shifts[i], &joined.graph);
+    models[i].mesh = {};
   }
   joined.graph.parts.back().end_frame = ModelPart::kNoEnd;
   joined.graph.motions.resize(joined.graph.size());

@@ -23,8 +23,8 @@ using SurfaceModels = std::map<int, SurfaceModel>;
 /// One model out of the parts of a surface; the last one is in use to the end,
 /// the others, which were refuted or replaced (Surface::Reanchor), in the
 /// frames of their histories, see DeformationGraph::parts. Their canonical
-/// frames are laid beside one another along x, a metre apart, so that Eq. 3
-/// finds the nodes of one part only. In other frames their nodes have no
+/// frames are laid apart, a metre or more, in the cells of a cube, so that Eq.
+/// 3 finds the nodes of one part only. In other frames their nodes have no
 /// motion; those of the graph are the last ones that they had.
 SurfaceModel JoinModels(std::vector<SurfaceModel> models);
 

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "splitfusion/lib/base/chosen.h"
+#include "splitfusion/lib/geometry/nearest_point.h"
+#include "splitfusion/lib/geometry/triangle_corners.h"
 #include "splitfusion/lib/visibility/seen_triangles.h"
 
 namespace splitfusion {
@@ -43,55 +44,6 @@ std::vector<Eigen::Vector3i> TrianglesOf(
   return triangles;
 }
 
-/// Marks the nodes by which `center` reaches some others in as few edges as in
-/// the whole graph, by marked ones where it can.
-void MarkWays(const DeformationGraph& graph, int center,
-              const std::set<int>& others, std::vector<char>* marked) {
-  std::map<int, int> before = {{center, center}};
-  std::size_t missing = others.size() - others.count(center);
-  for (std::vector<int> ring = {center}; missing > 0 && !ring.empty();) {
-    std::stable_partition(ring.begin(), ring.end(),
-                          [&](int i) { return (*marked)[i] != 0; });
-    std::vector<int> next;
-    for (const int i : ring) {
-      for (const int j : graph.neighbors[i]) {
-        if (!before.emplace(j, i).second) continue;
-        next.push_back(j);
-        missing -= others.count(j);
-      }
-    }
-    ring = std::move(next);
-  }
-  for (int node : others) {
-    for (; node != center; node = before.at(node)) (*marked)[node] = true;
-  }
-}
-
-/// The nodes by which a SkinningIndex of theirs gives the same skinning of some
-/// vertices: those that it looks at, and those by which it comes upon them.
-std::vector<char> NodesFor(const std::vector<char>& vertices,
-                           const TriangleMesh& mesh,
-                           const std::vector<SkinningSupport>& supports,
-                           const SkinningIndex& index,
-                           const DeformationGraph& graph) {
-  std::map<int, std::set<int>> looked_at;  // By nearest node.
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (vertices[i] == 0) continue;
-    const std::vector<int> nodes =
-        index.NodesLookedAt(mesh.vertices[i], supports[i].nearest);
-    looked_at[supports[i].nearest].insert(nodes.begin(), nodes.end());
-  }
-  std::vector<char> marked(graph.size(), false);
-  for (const auto& [nearest, nodes] : looked_at) {
-    marked[nearest] = true;
-    for (const int node : nodes) marked[node] = true;
-  }
-  for (const auto& [nearest, nodes] : looked_at) {
-    MarkWays(graph, nearest, nodes, &marked);
-  }
-  return marked;
-}
-
 /// Numbers of the members among themselves; -1: no member.
 std::vector<int> Numbers(const std::vector<char>& members) {
   std::vector<int> numbers(members.size(), -1);
@@ -123,8 +75,11 @@ DeformationGraph GraphOf(const DeformationGraph& graph,
 
 /// Some triangles of a mesh, with their vertices alone.
 TriangleMesh MeshOf(const TriangleMesh& mesh,
-                    const std::vector<Eigen::Vector3i>& triangles,
-                    const std::vector<char>& vertices) {
+                    const std::vector<Eigen::Vector3i>& triangles) {
+  std::vector<char> vertices(mesh.vertices.size(), false);
+  for (const Eigen::Vector3i& t : triangles) {
+    for (int k = 0; k < 3; ++k) vertices[t[k]] = true;
+  }
   TriangleMesh part;
   part.vertices = Chosen(mesh.vertices, vertices);
   part.normals = Chosen(mesh.normals, vertices);
@@ -136,18 +91,39 @@ TriangleMesh MeshOf(const TriangleMesh& mesh,
   return part;
 }
 
-/// Triangles that were seen first at about the same time.
-struct TrianglesOfAge {
+/// The nodes of `of_nodes` that are the nearest one of a vertex.
+std::vector<int> Carriers(const std::vector<SkinningSupport>& supports,
+                          const std::vector<char>& of_nodes) {
+  std::vector<char> carries(of_nodes.size(), false);
+  for (const SkinningSupport& one : supports) {
+    carries[one.nearest] = of_nodes[one.nearest];
+  }
+  std::vector<int> carriers;
+  for (std::size_t i = 0; i < carries.size(); ++i) {
+    if (carries[i] != 0) carriers.push_back(static_cast<int>(i));
+  }
+  return carriers;
+}
+
+/// What one node carries.
+struct Carried {
   std::vector<Eigen::Vector3i> triangles;
-  int first_frame = std::numeric_limits<int>::max();
+  int first_frame = std::numeric_limits<int>::max();  // Of a sight.
 };
 
-/// Triangles by the power of two of frames since they were seen first.
-std::map<int, TrianglesOfAge> ByAge(
-    const std::vector<Eigen::Vector3i>& triangles, const TriangleMesh& mesh,
-    const std::vector<Skinning>& skinning, const DeformationGraph& graph,
-    int now) {
-  std::map<int, TrianglesOfAge> by_age;
+/// Triangles by the nearest one of some nodes; without those that were seen
+/// after `now` or never.
+std::map<int, Carried> ByCarrier(const std::vector<Eigen::Vector3i>& triangles,
+                                 const std::vector<int>& carriers,
+                                 const TriangleMesh& mesh,
+                                 const std::vector<Skinning>& skinning,
+                                 const DeformationGraph& graph, int now) {
+  std::vector<Eigen::Vector3f> places;
+  for (const int node : carriers) {
+    places.push_back(graph.positions[node].cast<float>());
+  }
+  const NearestPoint tree(places);
+  std::map<int, Carried> carried;
   for (const Eigen::Vector3i& t : triangles) {
     int first = 0;
     for (int k = 0; k < 3; ++k) {
@@ -155,34 +131,56 @@ std::map<int, TrianglesOfAge> ByAge(
                        FirstSight(mesh.vertices[t[k]], skinning[t[k]], graph));
     }
     if (first > now) continue;
-    TrianglesOfAge& of_age = by_age[std::ilogb(now - first + 1)];
-    of_age.triangles.push_back(t);
-    of_age.first_frame = std::min(of_age.first_frame, first);
+    const Eigen::Vector3f middle = TriangleCorners(mesh.vertices, t).Middle();
+    Carried& one = carried[carriers[tree.Find(middle, -1, nullptr)]];
+    one.triangles.push_back(t);
+    one.first_frame = std::min(one.first_frame, first);
   }
-  return by_age;
+  return carried;
+}
+
+/// Nodes whose parts were seen first at about the same time.
+struct Generation {
+  std::vector<char> nodes;  // Of every one whether it is.
+  Carried carried;
+};
+
+/// By powers of four of frames since they were seen first.
+std::map<int, Generation> Generations(const std::map<int, Carried>& by_carrier,
+                                      int nodes, int now) {
+  std::map<int, Generation> generations;
+  for (const auto& [node, carried] : by_carrier) {
+    Generation& one =
+        generations[std::ilogb(now - carried.first_frame + 1) / 2];
+    one.nodes.resize(nodes, false);
+    one.nodes[node] = true;
+    one.carried.first_frame =
+        std::min(one.carried.first_frame, carried.first_frame);
+    one.carried.triangles.insert(one.carried.triangles.end(),
+                                 carried.triangles.begin(),
+                                 carried.triangles.end());
+  }
+  return generations;
 }
 
 }  // namespace
 
 std::vector<SurfacePart> PartsOf(const TriangleMesh& mesh,
                                  const MeshSkinning& skinning,
-                                 const SkinningIndex& index,
                                  const DeformationGraph& graph,
                                  const std::vector<char>& of_nodes, int now) {
   std::vector<SurfacePart> parts;
-  const std::vector<SkinningSupport>& supports = skinning.supports();
-  for (const auto& [age, of_age] :
-       ByAge(TrianglesOf(mesh, supports, of_nodes), mesh, skinning.skinning(),
-             graph, now)) {
-    std::vector<char> vertices(mesh.vertices.size(), false);
-    for (const Eigen::Vector3i& t : of_age.triangles) {
-      for (int k = 0; k < 3; ++k) vertices[t[k]] = true;
-    }
+  const std::vector<int> carriers = Carriers(skinning.supports(), of_nodes);
+  if (carriers.empty()) return parts;
+  const std::map<int, Carried> by_carrier =
+      ByCarrier(TrianglesOf(mesh, skinning.supports(), of_nodes), carriers,
+                mesh, skinning.skinning(), graph, now);
+  for (auto& [age, generation] : Generations(by_carrier, graph.size(), now)) {
     SurfacePart part;
-    part.mesh = MeshOf(mesh, of_age.triangles, vertices);
-    part.nodes = NodesFor(vertices, mesh, supports, index, graph);
-    part.graph = GraphOf(graph, part.nodes);
-    part.first_frame = of_age.first_frame;
+    part.mesh = MeshOf(mesh, generation.carried.triangles);
+    part.graph = GraphOf(graph, generation.nodes);
+    part.nodes = std::move(generation.nodes);
+    part.first_frame = generation.carried.first_frame;
     parts.push_back(std::move(part));
   }
   return parts;

@@ -20,15 +20,14 @@ struct SurfacePart {
 /// What some nodes of a surface carry: the triangles with a vertex whose
 /// nearest node is one of `of_nodes` (of every node whether it is), and those
 /// beside them. They are apart by how many frames before `now` they were seen
-/// first (FirstSight()), by powers of two, and have no other nodes than Eq. 3
-/// asks for: what is kept of a part are the motions of its nodes since its
-/// first sight, and most of what is refuted is young. What was never seen is in
-/// none.
+/// first (FirstSight()), by powers of four, and carried by these nodes alone:
+/// what is kept of a part are the motions of its nodes since its first sight,
+/// and of every node there are as many as there are frames in which it was in
+/// use. What was never seen is in none.
 ///
-/// `index`: of `graph`; `skinning`: of the mesh's vertices, by it.
+/// `skinning`: of the mesh's vertices by `graph`.
 std::vector<SurfacePart> PartsOf(const TriangleMesh& mesh,
                                  const MeshSkinning& skinning,
-                                 const SkinningIndex& index,
                                  const DeformationGraph& graph,
                                  const std::vector<char>& of_nodes, int now);
 

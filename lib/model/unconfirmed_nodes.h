@@ -10,22 +10,29 @@
 namespace splitfusion {
 
 /// Counts for every node of a deforming surface the frames in which it was seen
-/// and those on end in which the surface itself hid it. Where tracking loses a
-/// limb, live points of it are fused wherever the warp field happens to carry
-/// them back, and a few frames later somewhere else: such pieces come to lie
-/// inside of the body, where no depth will ever refute them, and pull at what
-/// is tracked. They were seen in few frames. Point-based fusion drops points
-/// that were not confirmed in time likewise (Keller et al. 2013, section 4.4).
+/// and those since then in which the surface itself hid it. Where tracking
+/// loses a limb, live points of it are fused wherever the warp field happens to
+/// carry them back, and a few frames later somewhere else: such pieces come to
+/// lie inside of the body, where no depth will ever refute them, and pull at
+/// what is tracked. They were seen in few frames. Point-based fusion drops
+/// points that were not confirmed in time likewise (Keller et al. 2013,
+/// section 4.4). A model that was followed for a while before it was lost is
+/// believed for longer, but not for ever.
 class UnconfirmedNodes {
  public:
   /// Looks at one frame. `places`: of the nodes in the camera frame, metres;
+  /// `facing`: of every one whether it faces the camera (NodesFacing());
   /// `truncation`: of the surface's volume, metres. What something else hides,
   /// or what is outside of the image, says nothing.
   void Look(const LiveView& live, int surface,
-            const std::vector<Eigen::Vector3f>& places, double truncation);
+            const std::vector<Eigen::Vector3f>& places,
+            const std::vector<char>& facing, double truncation);
 
-  /// Of every node whether it was seen in less than `sights` frames, and not in
-  /// the last `hidden` ones, in all of which the surface itself hid it.
+  /// Of every node whether the surface itself has hidden it, since it was seen
+  /// last, in `hidden` frames and more; if it was seen in `sights` frames or
+  /// more, in as many times more, and those alone count then in which it faces
+  /// the camera: one's back is hidden as long as one is seen from the front.
+  /// None if `sights` is 0.
   std::vector<char> Nodes(int sights, int hidden) const;
 
   /// Begins to count anew for these nodes: what they carried is gone.
@@ -48,10 +55,11 @@ class UnconfirmedNodes {
   struct Counts {
     int seen = 0;    ///< In which it was.
     int hidden = 0;  ///< In which the surface hid it, since it was seen last.
+    int facing = 0;  ///< Of those, in which it faced the camera.
 
     template <typename Archive>
     void Serialize(Archive* archive) {
-      (*archive)(seen, hidden);
+      (*archive)(seen, hidden, facing);
     }
   };
 

@@ -28,10 +28,12 @@ class UnconfirmedNodesTest : public testing::Test {
 
   void Look(const std::vector<Eigen::Vector3f>& places, int frames) {
     for (int i = 0; i < frames; ++i) {
-      nodes_.Look(live_, kSurface, places, kTruncation);
+      nodes_.Look(live_, kSurface, places,
+                  std::vector<char>(places.size(), facing_), kTruncation);
     }
   }
 
+  bool facing_ = true;
   LiveView live_;
   UnconfirmedNodes nodes_;
 };
@@ -49,7 +51,24 @@ TEST_F(UnconfirmedNodesTest, WhatTheSurfaceItselfHidesIsForgottenInTime) {
   EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, false}));
   Look({kSeen, kInside}, 1);
   EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, true}));
-  EXPECT_EQ(nodes_.Nodes(4, 20), Nodes({false, false})) << "confirmed by then";
+  EXPECT_EQ(nodes_.Nodes(0, 20), Nodes({false, false}));
+}
+
+TEST_F(UnconfirmedNodesTest, WhatWasSeenForLongIsBelievedForLonger) {
+  Look({kSeen}, 8);
+  Look({kInside}, 39);
+  EXPECT_EQ(nodes_.Nodes(4, 20), Nodes({false}));
+  EXPECT_EQ(nodes_.Nodes(9, 20), Nodes({true}));
+  Look({kInside}, 1);
+  EXPECT_EQ(nodes_.Nodes(4, 20), Nodes({true}));
+}
+
+TEST_F(UnconfirmedNodesTest, WhatWasSeenFromTheOtherSideIsKept) {
+  Look({kSeen}, 8);
+  facing_ = false;
+  Look({kInside}, 1000);
+  EXPECT_EQ(nodes_.Nodes(4, 20), Nodes({false}));
+  EXPECT_EQ(nodes_.Nodes(9, 20), Nodes({true}));
 }
 
 TEST_F(UnconfirmedNodesTest, WhatOthersHideOrIsOutsideWaits) {
