@@ -164,9 +164,10 @@ Skinning SkinningIndex::Skin(const Eigen::Vector3f& point,
   few.SortByNode(used);
   float sum = 0;
   for (int k = 0; k < used; ++k) {
-    // The floor keeps the sum positive where all nodes are equally far.
+    // The floor keeps the sum positive where all nodes are equally far, and is
+    // taken for 0 / 0 where a point lies on the one node that may carry it.
     const float closeness = 1 - std::sqrt(few.squared(k)) / d_max;
-    const float weight = std::max(closeness * closeness, 1e-8f);
+    const float weight = std::fmax(closeness * closeness, 1e-8f);
     skinning.nodes[skinning.count] = few.node(k);
     skinning.weights[skinning.count++] = weight;
     sum += weight;

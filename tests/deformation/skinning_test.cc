@@ -82,6 +82,17 @@ TEST(Skinning, APointOnANodeAndEqualDistancesStayFinite) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(skinning.weights[k], 1.0 / 3, 1e-6);
 }
 
+TEST(Skinning, APointOnANodeWithoutEdgesIsCarriedByIt) {
+  DeformationGraph graph;
+  graph.positions = {{0, 0, 1}, {5, 0, 1}};
+  graph.motions.resize(2);
+  graph.neighbors.resize(2);
+  const Skinning skinning = SkinningIndex(graph, 4).Skin({5, 0, 1});
+  EXPECT_EQ(skinning.count, 1);
+  EXPECT_EQ(skinning.nodes[0], 1);
+  EXPECT_EQ(skinning.weights[0], 1.f);
+}
+
 TEST(Skinning, WeightsSumToOneAndNodesAscend) {
   const TriangleMesh mesh = PlateMesh(0.3, 0.2, 0.01, 1);
   const SkinningIndex index(CoverWithNodes(mesh, 0.04), 6);
