@@ -9,6 +9,7 @@
 
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
+#include "splitfusion/lib/model/part_motions.h"
 #include "splitfusion/lib/report/json_lines.h"
 #include "splitfusion/lib/report/run_paths.h"
 
@@ -49,22 +50,18 @@ Absences ReadAbsences(const RunPaths& paths) {
   return absences;
 }
 
-/// The parts of a graph. Parts are in the order in which they ended: one after
-/// which nothing goes on that was there before was a whole model, that ended as
-/// the surface was re-anchored; all other ones but the last were refuted.
+/// The parts of a graph.
 std::vector<PartOfSurface> PartsOf(const DeformationGraph& graph) {
   if (graph.parts.empty()) return {{0, graph.size()}};
+  const std::vector<char> refuted = WhichWereRefuted(graph);
   std::vector<PartOfSurface> parts;
-  int earliest = ModelPart::kNoEnd;  // First frame of the parts that follow.
-  for (std::size_t i = graph.parts.size(); i-- > 0;) {
+  for (std::size_t i = 0; i < graph.parts.size(); ++i) {
     const ModelPart& part = graph.parts[i];
     const int end =
         i + 1 < graph.parts.size() ? graph.parts[i + 1].node : graph.size();
-    parts.push_back({part.node, end, part.first_frame, part.end_frame,
-                     earliest < part.end_frame});
-    earliest = std::min(earliest, part.first_frame);
+    parts.push_back(
+        {part.node, end, part.first_frame, part.end_frame, refuted[i] != 0});
   }
-  std::reverse(parts.begin(), parts.end());
   return parts;
 }
 

@@ -314,7 +314,10 @@ std::vector<RefinedWindow> RefineHiddenMotions(
   const std::size_t parts = std::max<std::size_t>(1, model->graph.parts.size());
   const std::vector<Eigen::Vector3d> centers = CentersOf(*model);
   std::vector<std::vector<RefinedWindow>> windows(parts);
+  std::vector<char> refuted = WhichWereRefuted(model->graph);
+  refuted.resize(parts, false);
   tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t index) {
+    if (refuted[index] != 0) return;
     PartMotions motions =
         MotionsOfPart(*model, index, centers, world_from_camera);
     windows[index] = RefinePart(options, &motions);

@@ -47,9 +47,11 @@ struct RefinedWindow {
 /// (FrameMotions::seen), between their first and their last sight; of the other
 /// nodes too in frames in which nothing of their part of the surface was seen,
 /// between the first and the last in which anything was. All else stays as it
-/// was tracked. A frame alone has no more than its neighbours on the surface to
-/// say where a hidden node is; the whole sequence has its last and its next
-/// sight. Minimised is
+/// was tracked, and so do parts that were refuted
+/// (WhichWereRefuted()): they are pieces, of which nothing but
+/// what tracking tied them to says where they were. A frame alone has no more
+/// than its neighbours on the surface to say where a hidden node is; the whole
+/// sequence has its last and its next sight. Minimised is
 ///
 ///   E = sum |c_i - c_j - R_i (g_i - g_j)|^2
 ///       + mu sum |w(t-1) - 2 w(t) + w(t+1)|^2

@@ -165,4 +165,14 @@ void StoreMotions(const PartMotions& motions,
   }
 }
 
+std::vector<char> WhichWereRefuted(const DeformationGraph& graph) {
+  std::vector<char> refuted(graph.parts.size());
+  int earliest = ModelPart::kNoEnd;  // First frame of the parts that follow.
+  for (std::size_t i = graph.parts.size(); i-- > 0;) {
+    refuted[i] = earliest < graph.parts[i].end_frame;
+    earliest = std::min(earliest, graph.parts[i].first_frame);
+  }
+  return refuted;
+}
+
 }  // namespace splitfusion

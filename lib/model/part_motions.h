@@ -53,6 +53,11 @@ void StoreMotions(const PartMotions& motions,
                   const std::map<int, Rigid3d>& world_from_camera,
                   SurfaceModel* model);
 
+/// Of every part of a graph whether it was refuted: it ended while what follows
+/// went on. One after which nothing goes on that was there before was a whole
+/// model, which ended as its surface was re-anchored.
+std::vector<char> WhichWereRefuted(const DeformationGraph& graph);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_MODEL_PART_MOTIONS_H_

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/frame/live_view.h"
 #include "splitfusion/lib/model/surface_model.h"
 #include "splitfusion/lib/render/rasterizer.h"

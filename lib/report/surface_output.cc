@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/visibility/seen_triangles.h"
 
 namespace splitfusion {

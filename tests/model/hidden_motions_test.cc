@@ -278,6 +278,28 @@ TEST(HiddenMotions, PartsAreFoundInTheirFramesAlone) {
   EXPECT_LT(FarthestNode(joined, truth), 0.01);
 }
 
+TEST(HiddenMotions, OfRefutedPartsStayAsTheyWereTracked) {
+  const auto poses = Poses(FramesUpTo(30));
+  SurfaceModel part = SeenPlate(poses, Walk), rest = part;
+  part.history.frames.resize(20);
+  Hide(5, 12, All, &part);
+  Hide(5, 12, All, &rest);
+  SurfaceModel joined = JoinModels({part, rest});
+  const SurfaceModel before = joined;
+  const std::vector<RefinedWindow> windows =
+      RefineHiddenMotions(poses, {}, &joined);
+  ASSERT_EQ(windows.size(), 1u);
+  EXPECT_EQ(windows[0].part, 1);
+  for (const FrameMotions& frame : joined.history.frames) {
+    if (frame.frame >= 20) continue;
+    for (int i = 0; i < part.graph.size(); ++i) {
+      EXPECT_EQ(frame.Of(i).translation,
+                before.history.Find(frame.frame)->Of(i).translation);
+    }
+  }
+  EXPECT_GT(FarthestNode(joined, before), 0.05);
+}
+
 TEST(HiddenMotions, ShortWindowsAgreeWithLongOnes) {
   const auto poses = Poses(FramesUpTo(60));
   const SurfaceModel truth = SeenPlate(poses, Walk);

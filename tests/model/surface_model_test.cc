@@ -6,6 +6,7 @@
 #include <string>
 
 #include "splitfusion/lib/deformation/skinning.h"
+#include "splitfusion/lib/model/part_motions.h"
 #include "splitfusion/lib/visibility/seen_triangles.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
@@ -101,6 +102,15 @@ TEST(JoinModels, ShowsARefutedPartBesideTheRestUntilItsEnd) {
         (frame.frame < 5 ? 2 : 1) * rest.mesh.triangles.size())
         << frame.frame;
   }
+}
+
+TEST(WhichWereRefuted, EndedWhileOthersWentOn) {
+  DeformationGraph graph;
+  EXPECT_TRUE(WhichWereRefuted(graph).empty());
+  // A model with two parts that were refuted, and another one after it.
+  graph.parts = {{0, 2, 5}, {4, 3, 9}, {7, 2, 12}, {9, 12}};
+  EXPECT_EQ(WhichWereRefuted(graph),
+            std::vector<char>({true, true, false, false}));
 }
 
 TEST(IsInUse, IsFromTheFirstFrameOfAPartUntilItsEnd) {
