@@ -16,7 +16,7 @@ namespace {
 constexpr float kNearPixel = 0.5f;
 
 /// Share of an undistorted image that has a pixel: a check of the coefficients.
-constexpr double kLeastSeen = 0.5;  // Format.
+constexpr double kLeastSeen = 0.25;  // Format.
 
 /// Also false for what is not a number.
 bool IsInside(const cv::Vec2f& place, const cv::Size& size) {
@@ -95,7 +95,7 @@ Undistortion::Undistortion(const PinholeCamera& camera,
   }
   throw InputError("lens " + distortion.Text() + ": " + std::to_string(inside) +
                    " of " + std::to_string(places_.total()) +
-                   " pixels were seen through it: expected half or more");
+                   " pixels were seen through it: expected a quarter or more");
 }
 
 cv::Mat Undistortion::Color(const cv::Mat& image) const {

@@ -44,7 +44,8 @@ class Undistortion {
  public:
   /// `camera`: of the distorted images, and of those that come out.
   ///
-  /// @throw InputError if fewer than half of the pixels were seen through it.
+  /// @throw InputError if fewer than a quarter of the pixels were seen through
+  /// it.
   Undistortion(const PinholeCamera& camera, const LensDistortion& distortion);
 
   /// A colour image, HxW 8UC3: bilinear, black beyond the image.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "splitfusion/lib/base/error.h"
+#include "support/expect_input_error.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
@@ -57,8 +58,8 @@ TEST(SpoolFile, SaysWhatIsWrong) {
   const TemporaryFolder folder;
   const std::string missing = folder / "missing";
   const SpoolFolder there(missing);
-  // A folder that is none is not taken.
-  EXPECT_NO_THROW(SpoolFile().Append("abc", 3));
+  ExpectInputError([] { SpoolFile().Append("abc", 3); },
+                   "TMPDIR = '" + missing + "': expected a folder");
 }
 
 }  // namespace

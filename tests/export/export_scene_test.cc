@@ -113,6 +113,10 @@ TEST_F(ExportSceneTest, TakesEveryNthFrameAndSomeSurfaces) {
               ElementsAre("001_thin_plate_1", "001_thin_plate_2", "002_ball"));
   EXPECT_THAT(FramesWith(scene.surfaces[2]), ElementsAre(5));
   EXPECT_EQ(scene.surfaces[2].moments[0].place, 1u);
+  EXPECT_TRUE(scene.absent.empty());
+  options_.every = 10;  // The ball is there in frames 4 to 8.
+  EXPECT_THAT(ReadExportScene(folder_ / "run", options_).absent,
+              ElementsAre("002_ball"));
   options_.surfaces = {3};
   ExpectInputError([&] { ReadExportScene(folder_ / "run", options_); },
                    "surface 3: expected one of 0, 1, 2");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <string>
 
@@ -74,6 +75,30 @@ TEST(JoinModels, ShowsEachModelInItsFramesWhereItWas) {
       EXPECT_LT((where - expected).norm(), 1e-5f);
     }
   }
+}
+
+TEST(JoinModels, ThousandsOfPartsLieNearEnoughForSinglePrecision) {
+  const SurfaceModel plate = MovingPlate(2, 3, 0.1);
+  std::vector<SurfaceModel> parts(3000, plate);
+  for (SurfaceModel& part : parts) part.history.frames.resize(1);
+  const SurfaceModel joined = JoinModels(parts);
+  ASSERT_EQ(joined.graph.parts.size(), parts.size());
+  Eigen::AlignedBox3d extent;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const int node = joined.graph.parts[i].node;
+    const Eigen::Vector3d& g = joined.graph.positions[node];
+    extent.extend(g);
+    EXPECT_TRUE(
+        (g + joined.history.frames[0].motions[node].translation)
+            .isApprox(plate.graph.positions[0] +
+                          plate.history.frames[0].motions[0].translation,
+                      1e-12));
+    if (i == 0) continue;
+    const Eigen::Vector3d& before =
+        joined.graph.positions[joined.graph.parts[i - 1].node];
+    EXPECT_GT((g - before).norm(), 1);
+  }
+  EXPECT_LT(extent.sizes().maxCoeff(), 30);  // 1e-6 m.
 }
 
 TEST(JoinModels, EdgesStayWithinTheirModel) {

@@ -244,7 +244,13 @@ TEST_F(HtmlReportTest, SaysWhyThereIsNoViewer) {
   // The run of this test has no surfaces/ of its own.
   EXPECT_TRUE(Contains(folder_.Read("run/report.html"), "No viewer: "));
   const ReportedRun run = ReadReportedRun(RunPaths(folder_ / "run"));
-  EXPECT_FALSE(Contains(HtmlReport({run}, {false, false}), "No viewer: "));
+  std::vector<std::string> left_out;
+  EXPECT_FALSE(Contains(HtmlReport({run}, {false, false}, {}, &left_out),
+                        "No viewer: "));
+  EXPECT_TRUE(left_out.empty());
+  HtmlReport({run}, {}, {}, &left_out);
+  ASSERT_EQ(left_out.size(), 1u);
+  EXPECT_TRUE(Contains(left_out[0], folder_ / "run"));
 }
 
 TEST_F(HtmlReportTest, ManyRunsAreDrawnOverOneAnotherAlone) {

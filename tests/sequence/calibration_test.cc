@@ -122,6 +122,20 @@ TEST(Calibration, AColourCameraIsWholeOrNotThere) {
                    "camera.txt: no line 'color_height VALUE'");
 }
 
+TEST(Calibration, ASizeIsANumberOfPixels) {
+  const TemporaryFolder folder;
+  for (const char* size : {"0", "-3", "12.5", "1e9"}) {
+    const std::string path = folder.Write(
+        "camera.txt", kKeys +
+                          std::string("color_height 968\ncolor_fx 1\n"
+                                      "color_fy 1\ncolor_cx 1\n"
+                                      "color_cy 1\ncolor_width ") +
+                          size + "\n");
+    ExpectInputError([&] { ReadCalibrationKeys(path); },
+                     "expected a number of pixels");
+  }
+}
+
 TEST(Calibration, NamesKeysThatNobodyReads) {
   const TemporaryFolder folder;
   const auto with = [&](const std::string& line) {

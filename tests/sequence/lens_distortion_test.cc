@@ -126,6 +126,13 @@ TEST(LensDistortion, WithoutAnyImagesStayAsTheyAre) {
   EXPECT_EQ(cv::norm(undistortion.Color(image), image, cv::NORM_INF), 0);
 }
 
+TEST(LensDistortion, OneThroughWhichLittleWasSeenIsRefused) {
+  LensDistortion lens;
+  lens.coefficients[0] = 1e9;
+  ExpectInputError([&] { Undistortion(kCamera, lens); },
+                   "pixels were seen through it: expected a quarter or more");
+}
+
 TEST(LensDistortion, NamesACoefficientThatIsNoNumber) {
   LensDistortion lens;
   lens.coefficients[3] = std::numeric_limits<double>::infinity();
