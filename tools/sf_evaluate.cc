@@ -285,6 +285,7 @@ void CheckUsage() {
 
 int Run(const FormatRegistry& formats) {
   CheckUsage();
+  if (!FLAGS_output.empty()) CheckIsNoFileOfARun(FLAGS_output);
   const EvaluationOptions options = OptionsFromFlags();
   if (FLAGS_check_only) return kExitDone;
   if (!FLAGS_trajectory.empty()) {

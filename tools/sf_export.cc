@@ -188,6 +188,7 @@ int Run(const std::vector<std::string>& arguments) {
   CheckOption(arguments.size() == 1, "RUN", arguments.size(),
               "one run directory");
   CheckOption(!FLAGS_output.empty(), "output", "''", "what to write");
+  CheckIsNoFileOfARun(FLAGS_output);
   const std::string kind = Kind();
   const bool known = kind == "glb" || kind == "pc2" || kind == "npz" ||
                      kind == "tum" || kind == "kitti" ||

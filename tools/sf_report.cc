@@ -160,6 +160,7 @@ int Run(std::vector<std::string> folders) {
                             [](const auto& one) { return !IsOfSolvers(one); });
   const std::vector<ReportedRun> runs = ReadRuns({folders.begin(), solved});
   if (!FLAGS_output.empty()) {
+    CheckIsNoFileOfARun(FLAGS_output);
     WritePage(runs, {solved, folders.end()});
   }
   if (!FLAGS_figures.empty()) {

@@ -12,13 +12,17 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <sstream>
+#include <system_error>
 #include <vector>
 
 #include "flag_names.h"
 #include "flagfile_check.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/process_memory.h"
+#include "splitfusion/lib/report/run_marker.h"
+#include "splitfusion/lib/report/run_paths.h"
 #include "term_ends.h"
 
 DECLARE_bool(help);
@@ -239,6 +243,24 @@ int ToolMain(int argc, char** argv, const std::string& usage,
     return kExitBadInput;
   } catch (const std::exception& error) {
     EndFailed(name, error.what());
+  }
+}
+
+void CheckIsNoFileOfARun(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(path, error);
+  if (error || !fs::exists(whole, error)) return;
+  for (fs::path folder = whole.parent_path(); folder.has_relative_path();
+       folder = folder.parent_path()) {
+    const RunPaths paths(folder.string());
+    if (!fs::exists(paths.Marker(), error)) continue;
+    if (whole == paths.Evaluation() || whole == paths.HtmlReport()) return;
+    const std::optional<RunMarker> marker = ReadRunMarker(folder.string());
+    const std::string name = whole.lexically_relative(folder).string();
+    if (whole != paths.Marker() && marker->files.count(name) == 0) continue;
+    throw InputError("--output=" + path +
+                     ": is a file of a run: expected another one");
   }
 }
 

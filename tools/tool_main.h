@@ -32,6 +32,12 @@ int ToolMain(int argc, char** argv, const std::string& usage,
              const std::function<int()>& body, const std::string& source = "",
              std::vector<std::string>* arguments = nullptr);
 
+/// Refuses --output=PATH where that is a file of a run, other than its
+/// evaluation and its page, which can be made again.
+///
+/// @throw InputError if it is.
+void CheckIsNoFileOfARun(const std::string& path);
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_TOOLS_TOOL_MAIN_H_

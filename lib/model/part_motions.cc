@@ -134,8 +134,8 @@ PartMotions MotionsOfPart(const SurfaceModel& model, std::size_t part,
                           const std::vector<Eigen::Vector3d>& centers,
                           const std::map<int, Rigid3d>& world_from_camera) {
   PartMotions motions = MotionsInWorld(model, part, centers, world_from_camera);
-  LeaveEndsAlone(&motions);
   LeaveOneSided(&motions);
+  LeaveEndsAlone(&motions);
   SpreadReturns(&motions);
   return motions;
 }

@@ -178,6 +178,18 @@ TEST(HiddenMotions, BeforeTheFirstAndAfterTheLastSightStayAsTheyAre) {
   EXPECT_EQ(FarthestNode(model, before), 0) << "never seen";
 }
 
+TEST(HiddenMotions, BeforeTheFirstSightStayWhereNothingWasSeenAtFirst) {
+  const auto poses = Poses(FramesUpTo(30));
+  SurfaceModel model = SeenPlate(poses, Walk);
+  for (FrameMotions& frame : model.history.frames) {
+    if (frame.frame < 3) frame.seen.assign(frame.seen.size(), false);
+    if (frame.frame < 15) frame.seen[0] = false;
+  }
+  const SurfaceModel before = model;
+  EXPECT_TRUE(RefineHiddenMotions(poses, {}, &model).empty());
+  EXPECT_EQ(FarthestNode(model, before), 0);
+}
+
 TEST(HiddenMotions, OfNodesNeverSeenAgainStayAsTheyWereTracked) {
   const auto poses = Poses(FramesUpTo(30));
   SurfaceModel model = SeenPlate(poses, Walk);

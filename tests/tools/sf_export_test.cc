@@ -255,6 +255,24 @@ assert (of('tracked') == 1).any() and of('colors').dtype == np.uint8
   EXPECT_GT(count, 1000);
 }
 
+TEST_F(SfExport, FilesOfTheRunAreNotWrittenOver) {
+  const std::string before = folder_.Read("run/trajectory.txt");
+  const ProgramResult result = Export("run/trajectory.txt", "--as=kitti");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(
+      result.errors,
+      HasSubstr("trajectory.txt: is a file of a run: expected another"));
+  EXPECT_EQ(folder_.Read("run/trajectory.txt"), before);
+  EXPECT_EQ(Export("run/run.json", "--as=npz").exit_code, 2);
+  EXPECT_EQ(Export("run/poses.txt", "--as=kitti").exit_code, 0);
+  const auto page = [&](const std::string& name) {
+    return RunProgram("sf_report", (folder_ / "run") + " --media=none" +
+                                       " --output=" + (folder_ / name));
+  };
+  EXPECT_EQ(page("run/summary.json").exit_code, 2);
+  EXPECT_EQ(page("run/report.html").exit_code, 0);
+}
+
 TEST(SfExportMessages, SayWhatIsWrong) {
   if (!HasProgram("sf_export")) GTEST_SKIP() << "sf_export is not built";
   const TemporaryFolder folder;
