@@ -108,7 +108,7 @@ FrameMotions MotionLog::Load(int i) const {
   };
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     add(numbers[k], MotionFrom(&bytes[k * sizeof(SpooledMotion)]),
-        static_cast<char>(head.has_seen ? bytes[seen_from + k] : false));
+        head.has_seen ? bytes[seen_from + k] : char{false});
   }
   for (const Births& births : births_) {
     if (births.first < block.nodes_ever) continue;
@@ -127,8 +127,9 @@ FrameMotions MotionLog::Load(int i) const {
   }
   // As of frames in memory: of those that grew it is known of every node.
   if (head.has_seen || block.changes != changes_) {
-    for (const int number : *numbers_)
+    for (const int number : *numbers_) {
       frame.seen.push_back(seen[place[number]]);
+    }
   }
   return frame;
 }
