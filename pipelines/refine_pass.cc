@@ -1,9 +1,8 @@
 #include "splitfusion/pipelines/refine_pass.h"
 
-#include <map>
+#include <vector>
 
-#include "splitfusion/lib/model/hidden_motions.h"
-#include "splitfusion/lib/report/refinement_report.h"
+#include "splitfusion/lib/model/hidden_deviations.h"
 
 namespace splitfusion {
 
@@ -15,20 +14,31 @@ SurfaceModels ModelsOf(const SplitFusion& fusion) {
   return models;
 }
 
-std::string RefineModelMotions(const SplitFusion& fusion,
-                               const std::function<void(int, int)>& shown,
-                               SurfaceModels* models) {
+int RefineAndReport(const std::map<int, Rigid3d>& world_from_camera,
+                    const HiddenMotionOptions& options, int surface,
+                    SurfaceModel* model, RefinementReport* report) {
+  const std::vector<RefinedWindow> windows =
+      RefineHiddenMotions(world_from_camera, options, model);
+  report->Add(surface, windows,
+              HiddenDeviations(world_from_camera, options, *model));
+  int hidden = 0;
+  for (const RefinedWindow& window : windows) hidden += window.kept;
+  return hidden;
+}
+
+RefinementReport RefineModelMotions(const SplitFusion& fusion,
+                                    const std::function<void(int, int)>& shown,
+                                    SurfaceModels* models) {
   const std::map<int, Rigid3d> poses = fusion.PosesByFrame();
-  std::string lines;
+  RefinementReport report;
   int done = 0;
   for (auto& [id, model] : *models) {
     if (!fusion.surfaces().at(id)->is_ray_cast()) {
-      lines += RefinementLines(
-          id, RefineHiddenMotions(poses, fusion.options().hidden, &model));
+      RefineAndReport(poses, fusion.options().hidden, id, &model, &report);
     }
     shown(++done, static_cast<int>(models->size()));
   }
-  return lines;
+  return report;
 }
 
 }  // namespace splitfusion

@@ -2,9 +2,12 @@
 #define SPLITFUSION_PIPELINES_REFINE_PASS_H_
 
 #include <functional>
-#include <string>
+#include <map>
 
+#include "splitfusion/lib/geometry/rigid3.h"
+#include "splitfusion/lib/model/hidden_motions.h"
 #include "splitfusion/lib/model/surface_model.h"
+#include "splitfusion/lib/report/refinement_report.h"
 #include "splitfusion/pipelines/split_fusion.h"
 
 namespace splitfusion {
@@ -12,16 +15,22 @@ namespace splitfusion {
 /// What is kept of every surface, with the motions as they were tracked.
 SurfaceModels ModelsOf(const SplitFusion& fusion);
 
+/// Finds the hidden motions of a surface, RefineHiddenMotions(), and their
+/// deviations, and adds them to a report. Returns how many nodes were hidden,
+/// each frame counted. `world_from_camera`: by frame index.
+int RefineAndReport(const std::map<int, Rigid3d>& world_from_camera,
+                    const HiddenMotionOptions& options, int surface,
+                    SurfaceModel* model, RefinementReport* report);
+
 /// A pass over all frames, once they are tracked: finds the motions of what was
 /// hidden, see RefineHiddenMotions(), of all surfaces but a background that is
 /// ray cast, whose motion was measured in every frame. `shown`: called with the
 /// number of surfaces so far and of all.
 ///
 /// `models`: ModelsOf(fusion).
-/// @return the lines of refinement.jsonl.
-std::string RefineModelMotions(const SplitFusion& fusion,
-                               const std::function<void(int, int)>& shown,
-                               SurfaceModels* models);
+RefinementReport RefineModelMotions(const SplitFusion& fusion,
+                                    const std::function<void(int, int)>& shown,
+                                    SurfaceModels* models);
 
 }  // namespace splitfusion
 

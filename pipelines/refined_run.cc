@@ -16,9 +16,9 @@
 #include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/page/html_report.h"
-#include "splitfusion/lib/report/refinement_report.h"
 #include "splitfusion/lib/report/run_summary.h"
 #include "splitfusion/lib/report/surface_output.h"
+#include "splitfusion/pipelines/refine_pass.h"
 
 namespace splitfusion {
 namespace {
@@ -32,10 +32,10 @@ bool IsWrittenAnew(const std::string& path) {
   const RunPaths here("");
   const fs::path file(path);
   const std::string first = file.begin()->string();
-  return path == here.Refinement() || path == here.Summary() ||
-         path == here.HtmlReport() || path == here.Options() ||
-         path == here.Evaluation() || first == "checkpoints" ||
-         file.filename() == "motions.bin" ||
+  return path == here.Refinement() || path == here.HiddenDeviations() ||
+         path == here.Summary() || path == here.HtmlReport() ||
+         path == here.Options() || path == here.Evaluation() ||
+         first == "checkpoints" || file.filename() == "motions.bin" ||
          file.filename() == "residuals.h5" ||
          file.parent_path().filename() == "warped";
 }
@@ -79,7 +79,7 @@ WarpedOutput WarpedOf(const std::string& root, const RunMarker& marker) {
 /// What was refined, over all surfaces.
 struct Refinement {
   int hidden = 0;
-  std::string lines;
+  RefinementReport report;
   std::map<int, double> stretched;  // By surface, shares.
   double seconds = 0;
 };
@@ -108,11 +108,9 @@ void RefineSurface(const std::map<int, Rigid3d>& poses,
   const bool is_room = surface.id == 0 && model.graph.rigid();
   if (!is_room) {
     const Stopwatch stopwatch;
-    const std::vector<RefinedWindow> windows =
-        RefineHiddenMotions(poses, options, &model);
+    refinement->hidden += RefineAndReport(poses, options, surface.id, &model,
+                                          &refinement->report);
     refinement->seconds += stopwatch.Seconds();
-    for (const RefinedWindow& w : windows) refinement->hidden += w.kept;
-    refinement->lines += RefinementLines(surface.id, windows);
   }
   WriteMotions(to.Surface(surface.id, surface.label) + "/motions.bin",
                model.history, model.graph.size());
@@ -196,16 +194,22 @@ void RefinedRun::CopyFiles(const RunPaths& to) const {
 }
 
 void RefinedRun::WriteOptions(const RunPaths& to) const {
-  const auto values = ValuesOf(options_);
+  auto values = ValuesOf(options_);
   std::ifstream before(RunPaths(root_).Options());
   std::string text;
   for (std::string line; std::getline(before, line);) {
-    for (const auto& [name, value] : values) {
-      if (line.rfind("--" + name + "=", 0) == 0) {
-        line = "--" + name + "=" + value;
-      }
+    const std::string flag = line.substr(0, line.find('='));
+    const auto found =
+        values.find(flag.substr(std::min<std::size_t>(2, flag.size())));
+    if (found != values.end()) {
+      line = flag + "=" + found->second;
+      values.erase(found);
     }
     text += line + "\n";
+  }
+  // Options that the version that wrote the run did not have.
+  for (const auto& [name, value] : values) {
+    text += "--" + name + "=" + value + "\n";
   }
   WriteFileAtomically(to.Options(), [&](std::ostream& out) { out << text; });
 }
@@ -219,8 +223,7 @@ int RefinedRun::Write(RunFolder* folder) {
   for (RecordedSurface& surface : run_.surfaces) {
     RefineSurface(poses, options_, warped, to, std::move(surface), &refinement);
   }
-  WriteFileAtomically(to.Refinement(),
-                      [&](std::ostream& out) { out << refinement.lines; });
+  refinement.report.Write(to);
   WriteOptions(to);
   const Json summary =
       SummaryWith(refinement, ReadVersionedOrNull(RunPaths(root_).Summary()));

@@ -11,7 +11,6 @@
 
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/archive_file.h"
-#include "splitfusion/lib/base/atomic_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/median.h"
 #include "splitfusion/lib/model/surface_uncertainty.h"
@@ -382,6 +381,7 @@ void SequenceRun::WriteSurfaces(bool all_frames) {
   SurfaceModels models = ModelsOf(fusion);
   std::error_code ignored;  // That of an end before this one.
   std::filesystem::remove(directory_->paths().Refinement(), ignored);
+  std::filesystem::remove(directory_->paths().HiddenDeviations(), ignored);
   directory_->AddWritingSeconds(stopwatch.Restart());
   if (all_frames && fusion.options().hidden.refine) RefineModels(&models);
   directory_->AddRefiningSeconds(stopwatch.Restart());
@@ -407,14 +407,13 @@ void SequenceRun::WriteSurfaces(bool all_frames) {
 
 /// Finds the motions of what was hidden, and reports on them.
 void SequenceRun::RefineModels(SurfaceModels* models) const {
-  const std::string lines = RefineModelMotions(
+  const RefinementReport report = RefineModelMotions(
       work_->fusion,
       [this](int done, int total) {
         ShowPass(RunPass::kRefining, done, total);
       },
       models);
-  WriteFileAtomically(directory_->paths().Refinement(),
-                      [&](std::ostream& out) { out << lines; });
+  report.Write(directory_->paths());
 }
 
 /// Colours vertices from the frames that show them well, and finds how far

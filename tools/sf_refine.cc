@@ -18,6 +18,9 @@ DEFINE_double(refine_smoothness, splitfusion::HiddenMotionOptions().smoothness,
               "shape.");
 DEFINE_int32(refine_window, splitfusion::HiddenMotionOptions().window,
              "Frames of which the motions are found together.");
+DEFINE_int32(refine_samples, splitfusion::HiddenMotionOptions().samples,
+             "Solutions under noise from which deviations of what was hidden "
+             "are estimated; 0 = none.");
 DEFINE_int32(threads, 0, "Threads; 0 = all cores. The result is the same.");
 
 namespace splitfusion {
@@ -35,6 +38,7 @@ int Run(const std::vector<std::string>& arguments) {
   HiddenMotionOptions options;
   options.smoothness = FLAGS_refine_smoothness;
   options.window = FLAGS_refine_window;
+  options.samples = FLAGS_refine_samples;
   RefinedRun refined(arguments.front(), options);
   const ThreadLimit threads(FLAGS_threads);
   RunFolderOptions folder_options;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/base/mixed_bits.h"
 
 namespace splitfusion {
 namespace {
@@ -74,13 +75,6 @@ std::string Draw(const Axis& axis, double share) {
   return Draw(*range, place - std::floor(place));
 }
 
-/// The finaliser of splitmix64: spreads the bits of its argument.
-std::uint64_t Mixed(std::uint64_t bits) {
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-  return bits ^ (bits >> 31);
-}
-
 }  // namespace
 
 std::vector<Settings> ExpandGrid(const std::vector<Axis>& axes) {
@@ -118,7 +112,7 @@ std::vector<Settings> DrawDesign(const std::vector<Axis>& axes, int count,
 std::uint64_t StableHash(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a.
   for (const unsigned char c : text) hash = (hash ^ c) * 0x100000001b3ULL;
-  return Mixed(hash);
+  return MixedBits(hash);
 }
 
 double StableUniform(const std::string& text) {

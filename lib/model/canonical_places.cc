@@ -82,65 +82,97 @@ class LiveTiles {
   cv::Mat_<cv::Vec2f> ranges_;  // Nearest and farthest, metres.
 };
 
+/// Some vertices of a mesh, where they are in the camera frame.
+class WarpedVertices {
+ public:
+  /// Those that may be near a live point and are confirmed, or are not.
+  WarpedVertices(const PlacedMesh& mesh, bool confirmed, const LiveTiles& tiles,
+                 float reach) {
+    std::vector<Eigen::Vector3f> near;
+    for (std::size_t i = 0; i < mesh.warped.size(); ++i) {
+      if ((mesh.confirmed[i] != 0) != confirmed ||
+          !tiles.MayBeNear(mesh.warped[i], reach)) {
+        continue;
+      }
+      near.push_back(mesh.warped[i]);
+      vertices_.push_back(static_cast<int>(i));
+    }
+    if (!near.empty()) nearest_ = std::make_unique<NearestPoint>(near);
+  }
+
+  /// The vertex that is nearest to a point, if it is nearer than `reach`,
+  /// metres; else -1. `hint`: of the call for the pixel before.
+  int Find(const Eigen::Vector3f& point, double reach, int* hint) const {
+    if (nearest_ == nullptr) return -1;
+    float distance = 0;
+    *hint = nearest_->Find(point, *hint, &distance);
+    return distance < reach ? vertices_[*hint] : -1;
+  }
+
+ private:
+  std::vector<int> vertices_;
+  std::unique_ptr<NearestPoint> nearest_;
+};
+
 /// Nodes and mesh where they are in the camera frame.
 class WarpedModel {
  public:
-  WarpedModel(const DeformationGraph& graph,
-              const std::vector<Eigen::Vector3f>& vertices,
-              const std::vector<Eigen::Vector3f>& warped,
+  WarpedModel(const DeformationGraph& graph, const PlacedMesh& mesh,
               const LiveTiles& tiles, const CoverageLimits& limits)
-      : graph_(graph), limits_(limits) {
+      : graph_(graph),
+        limits_(limits),
+        vertices_(mesh.vertices),
+        confirmed_(mesh, true, tiles, static_cast<float>(limits.mesh)),
+        others_(mesh, false, tiles, static_cast<float>(limits.mesh)) {
     for (int i = 0; i < graph.size(); ++i) {
       centers_.push_back(
           (graph.positions[i] + graph.motions[i].translation).cast<float>());
     }
     nearest_node_ = std::make_unique<NearestPoint>(centers_);
-    std::vector<Eigen::Vector3f> near;
-    for (std::size_t i = 0; i < warped.size(); ++i) {
-      if (!tiles.MayBeNear(warped[i], static_cast<float>(limits.mesh))) {
-        continue;
-      }
-      near.push_back(warped[i]);
-      vertices_.push_back(vertices[i]);
-    }
-    if (!near.empty()) mesh_ = std::make_unique<NearestPoint>(near);
   }
 
   /// What was found for the pixel before: the next one's is near.
   struct Hint {
-    int vertex = -1;
+    int confirmed = -1;
+    int other = -1;
     int node = -1;
   };
 
-  Coverage Place(const Eigen::Vector3f& point, Hint* hint,
-                 cv::Vec3f* place) const {
-    float distance = 0;
-    if (mesh_ != nullptr) {
-      hint->vertex = mesh_->Find(point, hint->vertex, &distance);
-      if (distance < limits_.mesh) {
-        const Eigen::Vector3f& vertex = vertices_[hint->vertex];
-        *place = {vertex.x(), vertex.y(), vertex.z()};
-        return Coverage::kModelled;
-      }
+  /// Where a live point belongs.
+  struct Placed {
+    Coverage coverage = Coverage::kNone;
+    cv::Vec3f place;
+    int vertex = -1;  // If the mesh is there.
+  };
+
+  Placed Place(const Eigen::Vector3f& point, Hint* hint) const {
+    int vertex = confirmed_.Find(point, limits_.mesh, &hint->confirmed);
+    if (vertex < 0) vertex = others_.Find(point, limits_.mesh, &hint->other);
+    if (vertex >= 0) {
+      const Eigen::Vector3f& p = vertices_[vertex];
+      return {Coverage::kModelled, {p.x(), p.y(), p.z()}, vertex};
     }
+    float distance = 0;
     hint->node = nearest_node_->Find(point, hint->node, &distance);
     const Eigen::Vector3d carried =
         graph_.motions[hint->node].rotation.transpose() *
             (point - centers_[hint->node]).cast<double>() +
         graph_.positions[hint->node];
-    *place = {static_cast<float>(carried.x()), static_cast<float>(carried.y()),
-              static_cast<float>(carried.z())};
-    return distance < limits_.reach ? Coverage::kCarried
-                                    : Coverage::kOutOfReach;
+    return {
+        distance < limits_.reach ? Coverage::kCarried : Coverage::kOutOfReach,
+        {static_cast<float>(carried.x()), static_cast<float>(carried.y()),
+         static_cast<float>(carried.z())},
+        -1};
   }
 
  private:
   const DeformationGraph& graph_;
   const CoverageLimits limits_;
-  std::vector<Eigen::Vector3f> vertices_;  // Those that may be near.
+  const std::vector<Eigen::Vector3f>& vertices_;
+  const WarpedVertices confirmed_;
+  const WarpedVertices others_;
   std::vector<Eigen::Vector3f> centers_;
   std::unique_ptr<NearestPoint> nearest_node_;
-  std::unique_ptr<NearestPoint> mesh_;
 };
 
 /// Pixels along the edge of a block of the image that has one place: what is
@@ -148,43 +180,59 @@ class WarpedModel {
 constexpr int kBlock = 2;
 
 /// Places the certain points of a block where the first of them belongs.
-void PlaceBlock(const LiveView& live, int surface, const WarpedModel& model,
-                int v0, int u0, WarpedModel::Hint* hint,
-                CanonicalPlaces* found) {
-  Coverage coverage = Coverage::kNone;
-  cv::Vec3f place;
+/// Returns the vertex that is there, or -1.
+int PlaceBlock(const LiveView& live, int surface, const WarpedModel& model,
+               int v0, int u0, WarpedModel::Hint* hint,
+               CanonicalPlaces* found) {
+  WarpedModel::Placed placed;
   for (int v = v0; v < std::min(v0 + kBlock, live.depth.rows); ++v) {
     for (int u = u0; u < std::min(u0 + kBlock, live.depth.cols); ++u) {
       if (!IsCertain(live, surface, v, u)) continue;
-      if (coverage == Coverage::kNone) {
+      if (placed.coverage == Coverage::kNone) {
         const cv::Vec3f& p = live.map.points(v, u);
-        coverage = model.Place({p[0], p[1], p[2]}, hint, &place);
+        placed = model.Place({p[0], p[1], p[2]}, hint);
       }
-      found->points(v, u) = place;
-      found->coverage(v, u) = static_cast<std::uint8_t>(coverage);
+      found->points(v, u) = placed.place;
+      found->coverage(v, u) = static_cast<std::uint8_t>(placed.coverage);
     }
   }
+  return placed.vertex;
+}
+
+/// Vertices that occur, ascending, each once.
+std::vector<int> Occurring(const std::vector<std::vector<int>>& lists) {
+  std::vector<int> all;
+  for (const std::vector<int>& list : lists) {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
 }
 
 }  // namespace
 
-CanonicalPlaces FindCanonicalPlaces(
-    const LiveView& live, int surface, const DeformationGraph& graph,
-    const std::vector<Eigen::Vector3f>& vertices,
-    const std::vector<Eigen::Vector3f>& warped, const CoverageLimits& limits) {
-  const WarpedModel model(graph, vertices, warped, LiveTiles(live, surface),
-                          limits);
+CanonicalPlaces FindCanonicalPlaces(const LiveView& live, int surface,
+                                    const DeformationGraph& graph,
+                                    const PlacedMesh& mesh,
+                                    const CoverageLimits& limits) {
+  const WarpedModel model(graph, mesh, LiveTiles(live, surface), limits);
   CanonicalPlaces found;
   found.points.create(live.depth.size());
   found.points.setTo(cv::Scalar::all(std::numeric_limits<float>::quiet_NaN()));
   found.coverage.create(live.depth.size());
   found.coverage.setTo(0);
-  tbb::parallel_for(0, (live.depth.rows + kBlock - 1) / kBlock, [&](int row) {
+  const int rows = (live.depth.rows + kBlock - 1) / kBlock;
+  std::vector<std::vector<int>> shown(rows);
+  tbb::parallel_for(0, rows, [&](int row) {
     WarpedModel::Hint hint;
     for (int u = 0; u < live.depth.cols; u += kBlock) {
-      PlaceBlock(live, surface, model, row * kBlock, u, &hint, &found);
+      const int vertex =
+          PlaceBlock(live, surface, model, row * kBlock, u, &hint, &found);
+      if (vertex >= 0) shown[row].push_back(vertex);
     }
   });
+  found.shown = Occurring(shown);
   return found;
 }
 

@@ -28,10 +28,25 @@ enum class Coverage : std::uint8_t {
 /// would copy the one onto the other, and the copy would be tracked from then
 /// on (the voxel collisions of Dou et al., Fusion4D, 2016).
 ///
+/// What was confirmed comes first: a live point that a confirmed vertex is near
+/// to belongs there, however near another one is. A limb that tracking had lost
+/// is modelled anew; where the old one is found again, the new one, which lies
+/// upon it, is shown by no live point from then on.
+///
 /// Blocks of 2x2 pixels share the place of their first certain point.
 struct CanonicalPlaces {
   cv::Mat_<cv::Vec3f> points;       ///< Metres; NaN where there is none.
   cv::Mat_<std::uint8_t> coverage;  ///< Coverage of every pixel.
+  /// Vertices that live points were found to be at, ascending.
+  std::vector<int> shown;
+};
+
+/// A surface's mesh, on which live points are looked for.
+struct PlacedMesh {
+  const std::vector<Eigen::Vector3f>& vertices;  ///< Canonical, metres.
+  const std::vector<Eigen::Vector3f>& warped;    ///< Camera frame, metres.
+  /// Of every vertex whether it is confirmed.
+  const std::vector<char>& confirmed;
 };
 
 /// Distances that tell one Coverage from the other, metres.
@@ -40,12 +55,11 @@ struct CoverageLimits {
   double reach = 0;  ///< Of a node.
 };
 
-/// Finds the places of the live pixels of `surface`. `vertices` and `warped`:
-/// its mesh in the canonical and in the camera frame.
-CanonicalPlaces FindCanonicalPlaces(
-    const LiveView& live, int surface, const DeformationGraph& graph,
-    const std::vector<Eigen::Vector3f>& vertices,
-    const std::vector<Eigen::Vector3f>& warped, const CoverageLimits& limits);
+/// Finds the places of the live pixels of `surface`.
+CanonicalPlaces FindCanonicalPlaces(const LiveView& live, int surface,
+                                    const DeformationGraph& graph,
+                                    const PlacedMesh& mesh,
+                                    const CoverageLimits& limits);
 
 }  // namespace splitfusion
 

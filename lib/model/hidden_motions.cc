@@ -2,299 +2,14 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/CholmodSupport>
-#include <Eigen/SVD>
-#include <Eigen/SparseCore>
 #include <algorithm>
-#include <array>
 #include <map>
 #include <vector>
 
+#include "splitfusion/lib/model/hidden_window.h"
 #include "splitfusion/lib/model/part_motions.h"
 
 namespace splitfusion {
-namespace {
-
-using Places = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-
-/// Weights of three places whose sum is the second difference in time, at the
-/// middle one; 1, -2, 1 of frames that follow one another.
-std::array<double, 3> SecondDifference(int before, int at, int after) {
-  const double a = at - before, b = after - at;
-  return {2 / (a * (a + b)), -2 / (a * b), 2 / (b * (a + b))};
-}
-
-/// Frames [begin, end) of a part, whose hidden nodes are sought; what is hidden
-/// before them was found.
-class Window {
- public:
-  Window(PartMotions* motions, int begin, int end, double smoothness)
-      : motions_(*motions),
-        begin_(begin),
-        end_(end),
-        smoothness_(smoothness),
-        numbers_(end - begin, std::vector<int>(motions->nodes(), -1)) {
-    for (int f = begin; f < end; ++f) {
-      for (int i = 0; i < motions_.nodes(); ++i) {
-        if (motions_.states[f][i].hidden) numbers_[f - begin][i] = unknowns_++;
-      }
-    }
-  }
-
-  int unknowns() const { return unknowns_; }
-
-  /// Those before a frame.
-  int UnknownsBefore(int frame) const {
-    int count = 0;
-    for (int f = begin_; f < std::min(frame, end_); ++f) {
-      for (int i = 0; i < motions_.nodes(); ++i) count += Number(f, i) >= 0;
-    }
-    return count;
-  }
-
-  /// Leaves its motions as they were.
-  void GiveUp() {
-    ForEachUnknown([](int /*number*/, PartMotions::State& state) {
-      state.hidden = false;
-    });
-  }
-
-  /// Factorises the matrix of the places; false if that fails.
-  bool Factorize() {
-    std::vector<Eigen::Triplet<double>> entries;
-    start_.resize(unknowns_, 3);
-    ForEachUnknown([&](int number, const PartMotions::State& state) {
-      entries.emplace_back(number, number, kStay);
-      start_.row(number) = state.place;
-    });
-    ForEachEdge([&](int f, int i, int j) {
-      const std::array<int, 2> number = {Number(f, i), Number(f, j)};
-      AddProducts(number, {1, -1}, 1, &entries);
-    });
-    ForEachDifference([&](int f, int i, const std::array<double, 3>& weights) {
-      AddProducts(NumbersAt(f, i), weights, smoothness_, &entries);
-    });
-    Eigen::SparseMatrix<double> matrix(unknowns_, unknowns_);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    // METIS draws random numbers of the whole process.
-    cholesky_.cholmod().nmethods = 1;
-    cholesky_.cholmod().method[0].ordering = CHOLMOD_AMD;
-    cholesky_.cholmod().print = 0;
-    cholesky_.compute(matrix);
-    return cholesky_.info() == Eigen::Success;
-  }
-
-  /// Places for the rotations of now; the longest way of one, metres.
-  double FindPlaces() {
-    Places right = kStay * start_;
-    ForEachEdge([&](int f, int i, int j) {
-      const std::array<int, 2> number = {Number(f, i), Number(f, j)};
-      AddKnown(number, {1, -1}, 1, {Place(f, i), Place(f, j)},
-               RestEdge(f, i, j), &right);
-    });
-    ForEachDifference([&](int f, int i, const std::array<double, 3>& weights) {
-      AddKnown(NumbersAt(f, i), weights, smoothness_,
-               {Place(f - 1, i), Place(f, i), Place(f + 1, i)},
-               Eigen::Vector3d::Zero(), &right);
-    });
-    const Places found = cholesky_.solve(right);
-    double longest = 0;
-    ForEachUnknown([&](int number, PartMotions::State& state) {
-      const Eigen::Vector3d place = found.row(number);
-      longest = std::max(longest, (place - state.place).norm());
-      state.place = place;
-    });
-    return longest;
-  }
-
-  /// Rotations for the places of now: of each node the one that fits its edges
-  /// best, nearest to the one it had where they leave that open.
-  void FindRotations() {
-    for (int f = begin_; f < end_; ++f) {
-      for (int i = 0; i < motions_.nodes(); ++i) {
-        if (Number(f, i) < 0 || motions_.neighbors[i].empty()) continue;
-        Eigen::Matrix3d& rotation = motions_.states[f][i].rotation;
-        Eigen::Matrix3d sum = kStay * rotation.transpose();
-        for (const int j : motions_.neighbors[i]) {
-          sum += (motions_.rest[i] - motions_.rest[j]) *
-                 (Place(f, i) - Place(f, j)).transpose();
-        }
-        const Eigen::JacobiSVD<Eigen::Matrix3d> svd(
-            sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        Eigen::Matrix3d sign = Eigen::Matrix3d::Identity();
-        sign(2, 2) =
-            (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1
-                                                                          : 1;
-        rotation = svd.matrixV() * sign * svd.matrixU().transpose();
-      }
-    }
-  }
-
-  HiddenMotionCost Cost() const {
-    HiddenMotionCost cost;
-    ForEachEdge([&](int f, int i, int j) {
-      cost.arap +=
-          (Place(f, i) - Place(f, j) - RestEdge(f, i, j)).squaredNorm();
-    });
-    ForEachDifference([&](int f, int i, const std::array<double, 3>& weights) {
-      cost.smoothness += smoothness_ * (weights[0] * Place(f - 1, i) +
-                                        weights[1] * Place(f, i) +
-                                        weights[2] * Place(f + 1, i))
-                                           .squaredNorm();
-    });
-    return cost;
-  }
-
- private:
-  /// Weight with which a node stays where it was, of that of an edge: where
-  /// nothing else holds it.
-  static constexpr double kStay = 1e-6;  // Maths.
-
-  /// -1: known.
-  int Number(int frame, int node) const {
-    return frame < begin_ || frame >= end_ ? -1
-                                           : numbers_[frame - begin_][node];
-  }
-
-  std::array<int, 3> NumbersAt(int frame, int node) const {
-    return {Number(frame - 1, node), Number(frame, node),
-            Number(frame + 1, node)};
-  }
-
-  const Eigen::Vector3d& Place(int frame, int node) const {
-    return motions_.states[frame][node].place;
-  }
-
-  Eigen::Vector3d RestEdge(int frame, int i, int j) const {
-    return motions_.states[frame][i].rotation *
-           (motions_.rest[i] - motions_.rest[j]);
-  }
-
-  template <typename Visit>
-  void ForEachUnknown(const Visit& visit) {
-    for (int f = begin_; f < end_; ++f) {
-      for (int i = 0; i < motions_.nodes(); ++i) {
-        if (Number(f, i) >= 0) visit(Number(f, i), motions_.states[f][i]);
-      }
-    }
-  }
-
-  /// Edges (i, j) of which an end is sought.
-  template <typename Visit>
-  void ForEachEdge(const Visit& visit) const {
-    for (int f = begin_; f < end_; ++f) {
-      for (int i = 0; i < motions_.nodes(); ++i) {
-        for (const int j : motions_.neighbors[i]) {
-          if (Number(f, i) >= 0 || Number(f, j) >= 0) visit(f, i, j);
-        }
-      }
-    }
-  }
-
-  /// Second differences in time at frame f with a place that is sought; what
-  /// lies behind the window is taken for known.
-  template <typename Visit>
-  void ForEachDifference(const Visit& visit) const {
-    for (int f = std::max(1, begin_ - 1);
-         f <= end_ && f + 1 < motions_.frames(); ++f) {
-      const std::array<double, 3> weights =
-          SecondDifference(motions_.indices[f - 1], motions_.indices[f],
-                           motions_.indices[f + 1]);
-      for (int i = 0; i < motions_.nodes(); ++i) {
-        const std::array<int, 3> numbers = NumbersAt(f, i);
-        if (std::any_of(numbers.begin(), numbers.end(),
-                        [](int number) { return number >= 0; })) {
-          visit(f, i, weights);
-        }
-      }
-    }
-  }
-
-  /// What |sum of weights x places|^2 adds to the matrix.
-  template <std::size_t N>
-  static void AddProducts(const std::array<int, N>& numbers,
-                          const std::array<double, N>& weights, double weight,
-                          std::vector<Eigen::Triplet<double>>* entries) {
-    for (std::size_t a = 0; a < N; ++a) {
-      for (std::size_t b = 0; b < N; ++b) {
-        if (numbers[a] < 0 || numbers[b] < 0) continue;
-        entries->emplace_back(numbers[a], numbers[b],
-                              weight * weights[a] * weights[b]);
-      }
-    }
-  }
-
-  /// What |sum of weights x places - rest|^2 adds to the right side.
-  template <std::size_t N>
-  static void AddKnown(const std::array<int, N>& numbers,
-                       const std::array<double, N>& weights, double weight,
-                       const std::array<Eigen::Vector3d, N>& places,
-                       const Eigen::Vector3d& rest, Places* right) {
-    Eigen::Vector3d known = rest;
-    for (std::size_t a = 0; a < N; ++a) {
-      if (numbers[a] < 0) known -= weights[a] * places[a];
-    }
-    for (std::size_t a = 0; a < N; ++a) {
-      if (numbers[a] >= 0) {
-        right->row(numbers[a]) += weight * weights[a] * known.transpose();
-      }
-    }
-  }
-
-  PartMotions& motions_;
-  int begin_, end_;
-  double smoothness_;
-  int unknowns_ = 0;
-  std::vector<std::vector<int>> numbers_;  // By frame, then node.
-  Places start_;
-  // Not the supernodal one, whose sums depend on the number of threads.
-  Eigen::CholmodSimplicialLLT<Eigen::SparseMatrix<double>> cholesky_;
-};
-
-/// Finds what is hidden in frames [begin, end); kept is what is before `kept`.
-RefinedWindow Refine(int begin, int end, int kept,
-                     const HiddenMotionOptions& options, PartMotions* motions) {
-  constexpr int kMaxIterations = 30;  // Speed: ten are seldom needed.
-  constexpr double kSettled = 1e-4;   // Maths. Metres.
-  Window window(motions, begin, end, options.smoothness);
-  RefinedWindow report;
-  report.first_frame = motions->indices[begin];
-  report.last_frame = motions->indices[end - 1];
-  report.hidden = window.unknowns();
-  report.kept = window.UnknownsBefore(kept);
-  if (report.hidden == 0) return report;
-  report.initial = window.Cost();
-  report.solved = window.Factorize();
-  if (report.solved) {
-    double way = 0;
-    do {
-      way = window.FindPlaces();
-      window.FindRotations();
-    } while (++report.iterations < kMaxIterations && way > kSettled);
-  } else {
-    window.GiveUp();
-  }
-  report.final = window.Cost();
-  return report;
-}
-
-/// One window after the other; what half of them found is kept.
-std::vector<RefinedWindow> RefinePart(const HiddenMotionOptions& options,
-                                      PartMotions* motions) {
-  std::vector<RefinedWindow> windows;
-  for (int begin = 0; begin < motions->frames();) {
-    const int end = std::min(begin + options.window, motions->frames());
-    const bool is_last = end == motions->frames();
-    const int kept = is_last ? end : begin + options.window / 2;
-    const RefinedWindow window = Refine(begin, end, kept, options, motions);
-    if (window.hidden > 0) windows.push_back(window);
-    if (is_last) break;
-    begin = kept;
-  }
-  return windows;
-}
-
-}  // namespace
 
 void HiddenMotionOptions::List(OptionList* list) {
   list->Switch("refine", &refine,
@@ -306,6 +21,9 @@ void HiddenMotionOptions::List(OptionList* list) {
       "shape.");
   list->Number("refine_window", &window, Range::AtLeast(4), "frames",
                "Frames of which the motions are found together.");
+  list->Number("refine_samples", &samples, Range::AtLeast(0), "",
+               "Solutions under noise of the residuals' size, from which "
+               "deviations of what was hidden are estimated; 0 = none.");
 }
 
 std::vector<RefinedWindow> RefineHiddenMotions(
@@ -320,7 +38,7 @@ std::vector<RefinedWindow> RefineHiddenMotions(
     if (refuted[index] != 0) return;
     PartMotions motions =
         MotionsOfPart(*model, index, centers, world_from_camera);
-    windows[index] = RefinePart(options, &motions);
+    windows[index] = RefinePart(options, {}, &motions);
     StoreMotions(motions, world_from_camera, model);
   });
   std::vector<RefinedWindow> all;

@@ -18,6 +18,8 @@ struct HiddenMotionOptions {
   /// Frames of which the motions are found together; half of them are kept, and
   /// the others found anew with those that follow.
   int window = 32;
+  /// Samples of HiddenDeviations(); 0: none.
+  int samples = 0;
 
   /// Names, ranges and meaning of all fields.
   void List(OptionList* list);

@@ -121,6 +121,15 @@ void SpreadReturns(PartMotions* motions) {
 
 }  // namespace
 
+bool PartMotions::HasHidden() const {
+  for (const std::vector<State>& frame : states) {
+    for (const State& state : frame) {
+      if (state.hidden) return true;
+    }
+  }
+  return false;
+}
+
 std::vector<Eigen::Vector3d> CentersOf(const SurfaceModel& model) {
   std::vector<Eigen::Vector3d> centers = model.graph.positions;
   if (!model.graph.rigid() || model.mesh.vertices.empty()) return centers;

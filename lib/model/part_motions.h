@@ -25,6 +25,8 @@ struct PartMotions {
   int frames() const { return static_cast<int>(states.size()); }
   /// Number of nodes.
   int nodes() const { return static_cast<int>(rest.size()); }
+  /// Whether anything is sought.
+  bool HasHidden() const;
 
   int first_node = 0;                       ///< Index among the graph's.
   std::vector<Eigen::Vector3d> rest;        ///< Places, canonical.

@@ -198,19 +198,40 @@ void Surface::ReleaseBlocks() {
   mesh_extractor_ = MeshExtractor();
 }
 
+/// Of every vertex whether the node that is nearest to it is confirmed.
+std::vector<char> Surface::ConfirmedVertices() const {
+  std::vector<char> nodes =
+      unconfirmed_.Confirmed(graph_options_.confirmed_frames);
+  nodes.resize(graph_.size(), false);  // New ones.
+  std::vector<char> vertices;
+  for (const SkinningSupport& support : mesh_skinning_.supports()) {
+    vertices.push_back(nodes[support.nearest]);
+  }
+  return vertices;
+}
+
+/// Of every node whether it is the nearest one of any of these vertices.
+std::vector<char> Surface::NodesOf(const std::vector<int>& vertices) const {
+  std::vector<char> nodes(graph_.size(), false);
+  for (const int vertex : vertices) {
+    nodes[mesh_skinning_.supports()[vertex].nearest] = true;
+  }
+  return nodes;
+}
+
 int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
   std::vector<Eigen::Vector3f> warped = WarpedVertices();
   refuted_.Look(live, id_, warped, mesh_skinning(), graph_.size(),
                 options_.tsdf.truncation);
-  unconfirmed_.Look(live, id_, NodePlaces(graph_),
-                    NodesFacing(mesh_, mesh_skinning_.supports(), graph_),
-                    options_.tsdf.truncation);
   ReleaseBlocks();
   const int forgotten = ForgetRefuted();
   if (forgotten > 0) warped = WarpedVertices();
   const CanonicalPlaces found = FindCanonicalPlaces(
-      live, id_, graph_, mesh_.vertices, warped,
+      live, id_, graph_, {mesh_.vertices, warped, ConfirmedVertices()},
       {kModelledVoxels * options_.tsdf.voxel_size, options_.growth_reach});
+  unconfirmed_.Look(live, id_, NodePlaces(graph_), NodesOf(found.shown),
+                    NodesFacing(mesh_, mesh_skinning_.supports(), graph_),
+                    options_.tsdf.truncation);
   AllocateAround(PlacesOfSurface(found), options_.tsdf.truncation, &volume_);
   observation->places = found.points;
   observation->place_tolerance = PlaceTolerance(options_.tsdf);
@@ -224,6 +245,7 @@ int Surface::FuseWarped(const LiveView& live, DepthObservation* observation) {
 std::vector<char> Surface::NodesToForget() const {
   std::vector<char> nodes = unconfirmed_.Nodes(
       graph_options_.confirmed_frames, graph_options_.unconfirmed_frames);
+  nodes.resize(graph_.size(), false);  // New ones.
   if (graph_options_.refuted_frames == 0) return nodes;
   const std::vector<char> refuted =
       refuted_.Nodes(graph_options_.refuted_frames);

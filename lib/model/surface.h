@@ -176,6 +176,8 @@ class Surface {
   void PlaceGraph(const LiveView& live);
   int FuseWarped(const LiveView& live, DepthObservation* observation);
   void ReleaseBlocks();
+  std::vector<char> ConfirmedVertices() const;
+  std::vector<char> NodesOf(const std::vector<int>& vertices) const;
   std::vector<char> NodesToForget() const;
   void Retire(const std::vector<char>& nodes);
   int ForgetRefuted();

@@ -21,12 +21,20 @@ namespace splitfusion {
 class UnconfirmedNodes {
  public:
   /// Looks at one frame. `places`: of the nodes in the camera frame, metres;
-  /// `facing`: of every one whether it faces the camera (NodesFacing());
-  /// `truncation`: of the surface's volume, metres. What something else hides,
-  /// or what is outside of the image, says nothing.
+  /// `shown`: of every one whether live points were found to be at what it
+  /// carries (CanonicalPlaces): it is seen. `facing`: whether that faces the
+  /// camera (NodesFacing()); `truncation`: of the surface's volume, metres. A
+  /// node that is not shown where a live pixel of the surface has something
+  /// within the truncation, or before it, is hidden by the surface. What
+  /// something else hides, or what is outside of the image, says nothing.
   void Look(const LiveView& live, int surface,
             const std::vector<Eigen::Vector3f>& places,
-            const std::vector<char>& facing, double truncation);
+            const std::vector<char>& shown, const std::vector<char>& facing,
+            double truncation);
+
+  /// Of every node whether it was seen in `sights` frames: it is confirmed.
+  /// None if `sights` is 0.
+  std::vector<char> Confirmed(int sights) const;
 
   /// Of every node whether the surface itself has hidden it, since it was seen
   /// last, in `hidden` frames and more; if it was seen in `sights` frames or

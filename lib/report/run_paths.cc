@@ -32,6 +32,9 @@ std::string RunPaths::Trajectory() const { return Below("trajectory.txt"); }
 std::string RunPaths::Frames() const { return Below("frames.jsonl"); }
 std::string RunPaths::Iterations() const { return Below("iterations.csv"); }
 std::string RunPaths::Refinement() const { return Below("refinement.jsonl"); }
+std::string RunPaths::HiddenDeviations() const {
+  return Below("hidden_deviations.csv");
+}
 std::string RunPaths::Summary() const { return Below("summary.json"); }
 std::string RunPaths::Evaluation() const { return Below("evaluation.json"); }
 std::string RunPaths::HtmlReport() const { return Below("report.html"); }
@@ -67,14 +70,14 @@ std::string RunPaths::SurfaceName(int id, const std::string& label) {
 
 bool RunPaths::IsOfRun(const std::string& name) {
   const RunPaths here("");
-  const std::array<std::string, 20> names = {
+  const std::array<std::string, 21> names = {
       here.Marker(),      here.Checkpoint(),  "checkpoints",
       here.Options(),     here.Calibration(), here.Trajectory(),
       here.Frames(),      here.Iterations(),  here.Summary(),
       here.Evaluation(),  here.HtmlReport(),  here.Pictures(),
       here.Detections(),  "solver",           "masks",
       "surfaces",         "problems",         "uncertainty",
-      here.ColorCamera(), here.Refinement()};
+      here.ColorCamera(), here.Refinement(),  here.HiddenDeviations()};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 

@@ -29,10 +29,12 @@ class RunPaths {
   std::string Frames() const;       ///< RUN/frames.jsonl
   std::string Iterations() const;   ///< RUN/iterations.csv
   std::string Refinement() const;   ///< RUN/refinement.jsonl
-  std::string Summary() const;      ///< RUN/summary.json
-  std::string Evaluation() const;   ///< RUN/evaluation.json
-  std::string HtmlReport() const;   ///< RUN/report.html
-  std::string Pictures() const;     ///< RUN/pictures
+  /// RUN/hidden_deviations.csv
+  std::string HiddenDeviations() const;
+  std::string Summary() const;     ///< RUN/summary.json
+  std::string Evaluation() const;  ///< RUN/evaluation.json
+  std::string HtmlReport() const;  ///< RUN/report.html
+  std::string Pictures() const;    ///< RUN/pictures
   /// RUN/detections, the masks of a network that ran inline.
   std::string Detections() const;
   /// RUN/problems/FRAME_NNN.h5, the last solve of surface NNN in a frame; or

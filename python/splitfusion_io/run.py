@@ -37,6 +37,7 @@ _KINDS: list[tuple[str, str, Any]] = [
     ("options.flags", "options", None),
     ("frames.jsonl", "frames", read_json_lines),
     ("refinement.jsonl", "refinement", read_json_lines),
+    ("hidden_deviations.csv", "hidden deviations", read_csv),
     ("iterations.csv", "iterations", read_csv),
     ("surfaces/*/mesh.ply", "mesh", read_ply),
     ("surfaces/*/warped/*.ply", "warped mesh", read_ply),

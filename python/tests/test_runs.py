@@ -265,6 +265,46 @@ class Runs(unittest.TestCase):
         self.assertEqual(len(rows), 12 * len(sf.Run(self.run_folder).frames))
         self.assertFalse(np.isnan(rows["x"]).any())
 
+    def test_hidden_deviations(self):
+        sequence = self.folder / "longer"
+        run_folder = self.folder / "sampled"
+        self.make(
+            "sf_synth",
+            "--width=160",
+            "--height=120",
+            "--frames=12",
+            f"--output={sequence}",
+            "--track_points=400",
+        )
+        self.make(
+            "sf_run",
+            f"--sequence={sequence}",
+            f"--output={run_folder}",
+            "--pictures_every=0",
+            "--refine_samples=2",
+        )
+        table = sf.Run(run_folder).read("hidden_deviations.csv")
+        self.assertEqual(
+            table.names, ["surface", "frame", "node", "sigma"]
+        )
+        self.assertTrue((table["sigma"] > 0).all())
+        root = Path(sf.__file__).resolve().parents[1]
+        result = subprocess.run(
+            [
+                sys.executable,
+                root / "examples" / "hidden_deviations.py",
+                run_folder,
+                sequence,
+                "0,6",
+            ],
+            capture_output=True,
+            text=True,
+            check=False,
+            env={**os.environ, "PYTHONPATH": str(root)},
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("rank correlation", result.stdout)
+
 
 if __name__ == "__main__":
     unittest.main()

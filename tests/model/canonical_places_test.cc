@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "support/sample_depth.h"
 #include "support/sample_graphs.h"
@@ -32,7 +34,14 @@ class CanonicalPlacesTest : public ::testing::Test {
   CanonicalPlaces Find(const std::vector<Eigen::Vector3f>& vertices) const {
     std::vector<Eigen::Vector3f> warped;
     for (const auto& v : vertices) warped.push_back(motion_.cast<float>() * v);
-    return FindCanonicalPlaces(live_, 1, graph_, vertices, warped, limits_);
+    return FindWarped(vertices, warped, std::vector<char>(vertices.size()));
+  }
+
+  CanonicalPlaces FindWarped(const std::vector<Eigen::Vector3f>& vertices,
+                             const std::vector<Eigen::Vector3f>& warped,
+                             const std::vector<char>& confirmed) const {
+    return FindCanonicalPlaces(live_, 1, graph_, {vertices, warped, confirmed},
+                               limits_);
   }
 
   /// Expects that exactly the live points that are near any vertex at all are
@@ -163,6 +172,43 @@ TEST_F(CanonicalPlacesTest, AMeshIsFoundFromFarWhenVoxelsAreCoarse) {
     EXPECT_GT(more, modelled) << limit;
     modelled = more;
   }
+}
+
+TEST_F(CanonicalPlacesTest, WhatWasConfirmedComesFirst) {
+  // A smaller second sheet, canonically elsewhere, lies on the live points; the
+  // first one lies 6 mm behind them.
+  std::vector<Eigen::Vector3f> vertices = plate_.vertices, warped;
+  for (const Eigen::Vector3f& v : plate_.vertices) {
+    warped.push_back(motion_.cast<float>() * v + Eigen::Vector3f(0, 0, 0.006f));
+  }
+  for (const Eigen::Vector3f& v : plate_.vertices) {
+    if (std::abs(v.x()) > 0.12f || std::abs(v.y()) > 0.07f) continue;
+    vertices.push_back(v + Eigen::Vector3f(5, 0, 0));
+    warped.push_back(motion_.cast<float>() * v);
+  }
+  const int first = static_cast<int>(plate_.vertices.size());
+  std::vector<char> confirmed(vertices.size(), true);
+  const CanonicalPlaces alike = FindWarped(vertices, warped, confirmed);
+  const auto count_second = [first](const CanonicalPlaces& places) {
+    return std::count_if(places.shown.begin(), places.shown.end(),
+                         [first](int vertex) { return vertex >= first; });
+  };
+  EXPECT_GT(count_second(alike), 100) << "the nearer one";
+  std::fill(confirmed.begin() + first, confirmed.end(), false);
+  const CanonicalPlaces found = FindWarped(vertices, warped, confirmed);
+  EXPECT_EQ(count_second(found), 0);
+  EXPECT_GT(found.shown.size(), 150u);
+  EXPECT_TRUE(std::is_sorted(found.shown.begin(), found.shown.end()));
+  for (int v = 0; v < 120; ++v) {
+    for (int u = 80; u < 160; ++u) {
+      if (!IsModelled(found, u, v)) continue;
+      EXPECT_LT(found.points(v, u)[0], 1);
+    }
+  }
+  // Where the first one is not, the second one is.
+  for (int i = 0; i < first; ++i) warped[i].z() += 0.02f;
+  EXPECT_GE(count_second(FindWarped(vertices, warped, confirmed)),
+            count_second(alike));
 }
 
 TEST_F(CanonicalPlacesTest, WithoutAMeshNodesCarryEverything) {

@@ -1,74 +1,21 @@
 #include "splitfusion/lib/model/hidden_motions.h"
 
-#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
-#include <utility>
 #include <vector>
 
-#include "splitfusion/cost_functions/arap.h"
 #include "support/expect_input_error.h"
+#include "support/hidden_plate.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 
 namespace splitfusion {
 namespace {
-
-using Map = std::function<Eigen::Vector3d(const Eigen::Vector3d&, int frame)>;
-
-/// Poses of a camera that moves and turns, world from camera.
-std::map<int, Rigid3d> Poses(const std::vector<int>& frames) {
-  std::map<int, Rigid3d> poses;
-  for (const int frame : frames) {
-    poses[frame] =
-        MakeMotion({0, 0.01 * frame, 0}, {0.02 * frame, 0, 0.01 * frame});
-  }
-  return poses;
-}
-
-std::vector<int> FramesUpTo(int last) {
-  std::vector<int> frames;
-  for (int frame = 0; frame <= last; ++frame) frames.push_back(frame);
-  return frames;
-}
-
-/// A plate that `map` moves in the world, all of it seen.
-SurfaceModel SeenPlate(const std::map<int, Rigid3d>& poses, const Map& map) {
-  SurfaceModel model;
-  model.mesh = PlateMesh(0.3, 0.2, 0.02, 1);
-  model.graph = CoverWithNodes(model.mesh, 0.05);
-  for (const auto& [frame, pose] : poses) {
-    DeformationGraph graph = model.graph;
-    MoveNodes([&, index = frame, view = pose.inverse()](
-                  const Eigen::Vector3d& p) { return view * map(p, index); },
-              &graph);
-    model.history.frames.push_back(
-        {frame, true, graph.motions, std::vector<char>(graph.size(), true)});
-  }
-  return model;
-}
-
-/// The plate was in sight in neither of these frames, and stood still in the
-/// camera's frame, for the nodes that `is_hidden` tells.
-void Hide(int first, int last, const std::function<bool(int)>& is_hidden,
-          SurfaceModel* model) {
-  const std::vector<NodeMotion> before =
-      model->history.Find(first - 1)->motions;
-  for (FrameMotions& frame : model->history.frames) {
-    if (frame.frame < first || frame.frame > last) continue;
-    for (int i = 0; i < model->graph.size(); ++i) {
-      if (!is_hidden(i)) continue;
-      frame.seen[i] = false;
-      frame.motions[i] = before[i];
-    }
-  }
-}
 
 bool All(int /*node*/) { return true; }
 
@@ -88,11 +35,6 @@ double FarthestNode(const SurfaceModel& a, const SurfaceModel& b) {
     }
   }
   return farthest;
-}
-
-/// Walks along x and sinks.
-Eigen::Vector3d Walk(const Eigen::Vector3d& p, int frame) {
-  return p + Eigen::Vector3d(0.03 * frame, 0.0005 * frame * frame, 0);
 }
 
 TEST(HiddenMotions, OfWhatWalksOnUnseenAreThoseOfItsWay) {
@@ -344,103 +286,6 @@ TEST(HiddenMotions, DoNotDependOnThreads) {
   EXPECT_EQ(FarthestNode(models[0], models[1]), 0);
 }
 
-/// Weighted second difference in time of a node's centre, in the world.
-struct SmoothInTime {
-  std::array<Eigen::Vector3d, 3> centers;  // Camera frames.
-  std::array<Rigid3d, 3> poses;            // World from camera.
-  double root;
-
-  template <typename T>
-  bool operator()(T const* const* twists, T* residual) const {
-    Eigen::Matrix<T, 3, 1> sum = Eigen::Matrix<T, 3, 1>::Zero();
-    constexpr std::array<double, 3> kWeights = {1, -2, 1};
-    for (int k = 0; k < 3; ++k) {
-      Eigen::Matrix<T, 3, 1> center = centers[k].cast<T>();
-      for (int d = 0; d < 3; ++d) center[d] += twists[k][3 + d];
-      sum += T(root * kWeights[k]) * (poses[k].linear().cast<T>() * center +
-                                      poses[k].translation().cast<T>());
-    }
-    for (int d = 0; d < 3; ++d) residual[d] = sum[d];
-    return true;
-  }
-};
-
-/// The same energy as a Ceres problem over the twists of all nodes, those that
-/// were seen held. Returns its least cost, twice Ceres'.
-double LeastCost(const std::map<int, Rigid3d>& poses, double smoothness,
-                 const SurfaceModel& model) {
-  const auto& frames = model.history.frames;
-  const int nodes = model.graph.size();
-  std::vector<std::array<double, 6>> twists(frames.size() * nodes, {{}});
-  ceres::Problem problem;
-  const auto block = [&](std::size_t f, int i) {
-    return twists[f * nodes + i].data();
-  };
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    DeformationGraph graph = model.graph;
-    graph.motions = frames[f].motions;
-    for (int i = 0; i < nodes; ++i) {
-      problem.AddParameterBlock(block(f, i), 6);
-      if (frames[f].Saw(i)) problem.SetParameterBlockConstant(block(f, i));
-    }
-    for (int i = 0; i < nodes; ++i) {
-      for (const int j : graph.neighbors[i]) {
-        auto* cost = new ceres::DynamicAutoDiffCostFunction<Arap>(
-            new Arap(Arap::Make(graph, i, j)));
-        cost->AddParameterBlock(6);
-        cost->AddParameterBlock(6);
-        cost->SetNumResiduals(3);
-        problem.AddResidualBlock(cost, nullptr, {block(f, i), block(f, j)});
-      }
-      if (f == 0 || f + 1 == frames.size()) continue;
-      auto* smooth = new SmoothInTime;
-      std::vector<double*> blocks;
-      for (int k = 0; k < 3; ++k) {
-        const FrameMotions& frame = frames[f + k - 1];
-        smooth->centers[k] =
-            model.graph.positions[i] + frame.motions[i].translation;
-        smooth->poses[k] = poses.at(frame.frame);
-        blocks.push_back(block(f + k - 1, i));
-      }
-      smooth->root = std::sqrt(smoothness);
-      auto* cost = new ceres::DynamicAutoDiffCostFunction<SmoothInTime>(smooth);
-      for (int k = 0; k < 3; ++k) cost->AddParameterBlock(6);
-      cost->SetNumResiduals(3);
-      problem.AddResidualBlock(cost, nullptr, blocks);
-    }
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-12;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return 2 * (summary.final_cost - summary.fixed_cost);
-}
-
-TEST(HiddenMotions, HaveTheLeastEnergyThatCeresFinds) {
-  const auto poses = Poses(FramesUpTo(12));
-  SurfaceModel model =
-      SeenPlate(poses, [](const Eigen::Vector3d& p, int frame) {
-        const double curvature = 0.2 * frame;
-        return Walk(curvature > 0 ? Bend(p, 1, curvature) : p, frame);
-      });
-  const auto is_right = [&](int i) {
-    return model.graph.positions[i].x() > -0.05;
-  };
-  Hide(3, 8, is_right, &model);
-  const SurfaceModel before = model;
-  const std::vector<RefinedWindow> windows =
-      RefineHiddenMotions(poses, {}, &model);
-  ASSERT_EQ(windows.size(), 1u);
-  const double cost = windows[0].final.arap + windows[0].final.smoothness;
-  for (const SurfaceModel* start : {&before, &std::as_const(model)}) {
-    const double least = LeastCost(poses, 100, *start);
-    EXPECT_GT(cost, 0.99 * least);
-    EXPECT_LT(cost, 1.02 * least);
-  }
-}
-
 TEST(HiddenMotions, OptionsAreChecked) {
   HiddenMotionOptions options;
   options.window = 3;
@@ -448,6 +293,9 @@ TEST(HiddenMotions, OptionsAreChecked) {
   options = {};
   options.smoothness = 0;
   ExpectInputError([&] { CheckOptions(options); }, "refine_smoothness");
+  options = {};
+  options.samples = -1;
+  ExpectInputError([&] { CheckOptions(options); }, "refine_samples");
 }
 
 }  // namespace

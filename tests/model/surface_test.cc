@@ -363,8 +363,8 @@ TEST(Surface, ForgetsWhatWasSeenSeldomAndIsHiddenByItself) {
     while (frame <= 20 && box.Fuse(ViewWithBox(kHalf)) == 0) ++frame;
     return frame;
   };
-  EXPECT_EQ(forgotten_in(3), 5);
-  EXPECT_EQ(forgotten_in(8), 10) << "it was seen for longer";
+  EXPECT_EQ(forgotten_in(3), 6) << "in the frame after five";
+  EXPECT_EQ(forgotten_in(8), 11) << "it was seen for longer";
 }
 
 TEST(Surface, ZeroFramesForgetNoParts) {

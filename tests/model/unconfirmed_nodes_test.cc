@@ -12,6 +12,14 @@ namespace {
 constexpr int kSurface = 1;
 constexpr double kTruncation = 0.03;
 
+using Nodes = std::vector<char>;
+
+const Eigen::Vector3f kSeen = {0, 0, 2};
+const Eigen::Vector3f kWithinTruncation = {0.1f, 0, 2.02f};
+const Eigen::Vector3f kInside = {0.1f, 0, 2.1f};
+const Eigen::Vector3f kBehindOther = {0.7f, 0, 2};
+const Eigen::Vector3f kOutside = {5, 0, 2};
+
 /// Surface 1 fills the image 2 m from the camera, but for the right quarter,
 /// where surface 2 stands 1 m from it.
 class UnconfirmedNodesTest : public testing::Test {
@@ -28,7 +36,11 @@ class UnconfirmedNodesTest : public testing::Test {
 
   void Look(const std::vector<Eigen::Vector3f>& places, int frames) {
     for (int i = 0; i < frames; ++i) {
-      nodes_.Look(live_, kSurface, places,
+      std::vector<char> shown;
+      for (const Eigen::Vector3f& place : places) {
+        shown.push_back(place == kSeen);
+      }
+      nodes_.Look(live_, kSurface, places, shown,
                   std::vector<char>(places.size(), facing_), kTruncation);
     }
   }
@@ -38,13 +50,6 @@ class UnconfirmedNodesTest : public testing::Test {
   UnconfirmedNodes nodes_;
 };
 
-using Nodes = std::vector<char>;
-
-const Eigen::Vector3f kSeen = {0, 0, 2};
-const Eigen::Vector3f kInside = {0.1f, 0, 2.1f};
-const Eigen::Vector3f kBehindOther = {0.7f, 0, 2};
-const Eigen::Vector3f kOutside = {5, 0, 2};
-
 TEST_F(UnconfirmedNodesTest, WhatTheSurfaceItselfHidesIsForgottenInTime) {
   Look({kSeen, kSeen}, 4);
   Look({kSeen, kInside}, 19);
@@ -52,6 +57,20 @@ TEST_F(UnconfirmedNodesTest, WhatTheSurfaceItselfHidesIsForgottenInTime) {
   Look({kSeen, kInside}, 1);
   EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, true}));
   EXPECT_EQ(nodes_.Nodes(0, 20), Nodes({false, false}));
+}
+
+TEST_F(UnconfirmedNodesTest, WhatLiesUponWhatIsShownIsHiddenByIt) {
+  Look({kSeen, kWithinTruncation}, 19);
+  EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, false}));
+  Look({kSeen, kWithinTruncation}, 1);
+  EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, true}));
+}
+
+TEST_F(UnconfirmedNodesTest, WhatWasSeenOftenIsConfirmed) {
+  Look({kSeen, kInside}, 8);
+  EXPECT_EQ(nodes_.Confirmed(8), Nodes({true, false}));
+  EXPECT_EQ(nodes_.Confirmed(9), Nodes({false, false}));
+  EXPECT_EQ(nodes_.Confirmed(0), Nodes({false, false}));
 }
 
 TEST_F(UnconfirmedNodesTest, WhatWasSeenForLongIsBelievedForLonger) {

@@ -172,7 +172,9 @@ TEST_F(ReportFormat, HasTheKeysOfTheSummary) {
 
 TEST_F(ReportFormat, HasTheKeysOfTheRefinement) {
   Keys keys;
-  CollectKeys(Json::parse(RefinementLines(1, {RefinedWindow()})), "", &keys);
+  RefinementReport report;
+  report.Add(1, {RefinedWindow()}, {});
+  CollectKeys(Json::parse(report.windows), "", &keys);
   EXPECT_EQ(Section("refinement.jsonl").keys(), keys);
 }
 

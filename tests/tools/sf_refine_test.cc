@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -100,6 +101,39 @@ TEST_F(SfRefine, FindsHiddenMotionsOfAFinishedRun) {
               HasSubstr("--refine=true\n"));
   EXPECT_EQ(
       RunProgram("sf_evaluate", "--run=" + (folder_ / "refined")).exit_code, 0);
+}
+
+TEST_F(SfRefine, EstimatesHowWellHiddenMotionsAreKnown) {
+  MakeRun();
+  EXPECT_FALSE(folder_.Has("run/hidden_deviations.csv"));
+  ASSERT_EQ(Refine("refined", "--refine_samples=2").exit_code, 0);
+  std::istringstream rows(folder_.Read("refined/hidden_deviations.csv"));
+  std::string row;
+  std::getline(rows, row);
+  EXPECT_EQ(row, "surface,frame,node,sigma");
+  const MotionHistory motions = Motions("refined");
+  int count = 0;
+  while (std::getline(rows, row)) {
+    int surface = 0, frame = 0, node = 0;
+    double sigma = 0;
+    ASSERT_EQ(std::sscanf(row.c_str(), "%d,%d,%d,%lf", &surface, &frame, &node,
+                          &sigma),
+              4)
+        << row;
+    EXPECT_EQ(surface, 1);
+    EXPECT_FALSE(motions.Find(frame)->Saw(node));
+    EXPECT_GT(sigma, 0);
+    EXPECT_LT(sigma, 0.5);
+    ++count;
+  }
+  int hidden = 0;
+  std::istringstream lines(folder_.Read("refined/refinement.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    hidden += nlohmann::json::parse(line)["kept"].get<int>();
+  }
+  EXPECT_EQ(count, hidden);
+  EXPECT_THAT(folder_.Read("refined/options.flags"),
+              HasSubstr("--refine_samples=2\n"));
 }
 
 TEST_F(SfRefine, IsWhatTheRunItselfWouldHaveDone) {
