@@ -40,15 +40,14 @@ class SpooledList {
         {file_->Append(bytes.data(), bytes.size()), bytes.size()});
   }
 
-  /// The value i, 0..size() - 1.
+  /// The value i, 0..size() - 1. `value`: of what is not saved of it.
   ///
   /// @throw InputError if the file cannot be read.
-  T At(int i) const {
+  T At(int i, T value = T()) const {
     std::string bytes(places_[i].bytes, '\0');
     file_->Read(places_[i].offset, bytes.data(), bytes.size());
     std::istringstream stream(std::move(bytes));
     ArchiveReader archive(&stream, places_[i].bytes, "temporary file");
-    T value;
     archive(value);
     return value;
   }

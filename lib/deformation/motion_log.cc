@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/chosen.h"
 #include "splitfusion/lib/deformation/node_births.h"
 
@@ -270,5 +271,46 @@ MotionLog MotionLog::Part(const std::vector<char>& nodes,
 void MotionLog::Finish() {
   while (!recent_.empty()) Spool();
 }
+
+namespace {
+
+/// Saves or restores a value that is shared and does not change.
+template <typename Archive, typename T>
+void SerializeShared(Archive* archive, std::shared_ptr<const T>* shared) {
+  T value;
+  if constexpr (!Archive::kReads) value = **shared;
+  (*archive)(value);
+  if constexpr (Archive::kReads) {
+    *shared = std::make_shared<const T>(std::move(value));
+  }
+}
+
+}  // namespace
+
+template <typename Archive>
+void MotionLog::SerializeIndex(Archive* archive) {
+  assert(recent_.empty());
+  blocks_.resize(archive->Count(blocks_.size(), 1));
+  for (std::shared_ptr<const Block>& shared : blocks_) {
+    Block block;
+    if constexpr (!Archive::kReads) block = *shared;
+    (*archive)(block.frames, block.nodes_ever, block.changes);
+    SerializeShared(archive, &block.numbers);
+    if constexpr (Archive::kReads) {
+      shared = std::make_shared<const Block>(std::move(block));
+    }
+  }
+  (*archive)(block_ends_, spooled_, nodes_ever_, changes_);
+  if (spooled_ == 0) return;  // It has no nodes.
+  SerializeShared(archive, &numbers_);
+  births_.resize(archive->Count(births_.size(), 1));
+  for (Births& births : births_) {
+    (*archive)(births.first);
+    SerializeShared(archive, &births.nodes);
+  }
+}
+
+template void MotionLog::SerializeIndex(ArchiveWriter*);
+template void MotionLog::SerializeIndex(ArchiveReader*);
 
 }  // namespace splitfusion

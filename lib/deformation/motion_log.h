@@ -78,6 +78,12 @@ class MotionLog {
   /// @throw InputError as Append().
   void Finish();
 
+  /// Saves or restores what is known of a complete one beside its motions,
+  /// which stay in the file: it is to be restored by one of the same file. See
+  /// lib/base/archive.h.
+  template <typename Archive>
+  void SerializeIndex(Archive* archive);
+
   /// Saves or restores it, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive) {
@@ -101,6 +107,11 @@ class MotionLog {
     bool tracked = true;       ///< As FrameMotions::tracked.
     bool has_seen = false;     ///< Whether it is known what was seen.
     std::uint64_t offset = 0;  ///< Of its bytes.
+
+    template <typename Archive>
+    void Serialize(Archive* archive) {
+      (*archive)(index, tracked, has_seen, offset);
+    }
   };
   /// Frames in the file, of the same nodes.
   struct Block {

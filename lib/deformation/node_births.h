@@ -34,6 +34,16 @@ class NodeBirths {
   /// Appends the motions of the new nodes to those of one frame.
   void Append(std::vector<NodeMotion>* motions) const;
 
+  /// Saves or restores them, see lib/base/archive.h.
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(places_, carriers_, carrier_positions_);
+    skinning_.resize(places_.size());
+    for (Skinning& one : skinning_) {
+      (*archive)(one.nodes, one.weights, one.count);
+    }
+  }
+
  private:
   std::vector<Eigen::Vector3f> places_;
   std::vector<int> carriers_;

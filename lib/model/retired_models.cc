@@ -1,29 +1,39 @@
 #include "splitfusion/lib/model/retired_models.h"
 
+#include <cstdint>
 #include <utility>
+
+#include "splitfusion/lib/base/archive.h"
 
 namespace splitfusion {
 
 void RetiredModels::Add(TriangleMesh mesh, DeformationGraph graph,
                         MotionLog history) {
-  shapes_.Add({std::move(mesh), std::move(graph)});
-  histories_.push_back(std::move(history));
+  models_.Add({std::move(mesh), std::move(graph), std::move(history)});
+}
+
+RetiredModels::Retired RetiredModels::Load(int i) const {
+  return models_.At(i, {{}, {}, MotionLog(file_)});
 }
 
 SurfaceModel RetiredModels::At(int i) const {
-  Shape shape = shapes_.At(i);
-  return {std::move(shape.mesh), std::move(shape.graph), histories_[i].All()};
+  Retired model = Load(i);
+  return {std::move(model.mesh), std::move(model.graph), model.history.All()};
 }
 
 template <typename Archive>
 void RetiredModels::Serialize(Archive* archive) {
-  (*archive)(shapes_);
-  if constexpr (Archive::kReads) {
-    histories_.assign(shapes_.size(), MotionLog(file_));
-  }
-  for (MotionLog& history : histories_) {
-    (*archive)(history);
-    if constexpr (Archive::kReads) history.Finish();
+  const std::uint64_t count = archive->Count(size(), 1);
+  if constexpr (Archive::kReads) models_ = SpooledList<Retired>(file_);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Retired model{{}, {}, MotionLog(file_)};
+    if constexpr (!Archive::kReads) model = Load(static_cast<int>(i));
+    // With its motions: a checkpoint has no other file.
+    (*archive)(model.mesh, model.graph, model.history);
+    if constexpr (Archive::kReads) {
+      model.history.Finish();
+      models_.Add(model);
+    }
   }
 }
 

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "splitfusion/lib/base/spooled_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
@@ -14,16 +13,16 @@
 namespace splitfusion {
 
 /// Models of a surface, and parts of them, that are used no more, in the order
-/// in which they ended. Nothing asks for them before the end: they lie in a
-/// temporary file, as there may be thousands of them in a long recording.
+/// in which they ended. Nothing asks for them before the end: all of them lies
+/// in a temporary file, as there may be thousands in a long recording.
 class RetiredModels {
  public:
   /// `file`: where they go.
   explicit RetiredModels(std::shared_ptr<SpoolFile> file)
-      : file_(std::move(file)), shapes_(file_) {}
+      : file_(std::move(file)), models_(file_) {}
 
   /// Their number.
-  int size() const { return static_cast<int>(histories_.size()); }
+  int size() const { return models_.size(); }
 
   /// Takes one more; `history` is complete, see MotionLog::Finish().
   ///
@@ -40,21 +39,24 @@ class RetiredModels {
   void Serialize(Archive* archive);
 
  private:
-  /// What a model is beside its motions.
-  struct Shape {
+  /// One of them.
+  struct Retired {
     TriangleMesh mesh;       ///< Canonical frame, metres.
     DeformationGraph graph;  ///< At its last motions.
+    MotionLog history;       ///< In the file already.
 
-    /// Saves or restores it.
+    /// Saves or restores it, but for the motions in the file.
     template <typename Archive>
     void Serialize(Archive* archive) {
       (*archive)(mesh, graph);
+      history.SerializeIndex(archive);
     }
   };
 
+  Retired Load(int i) const;
+
   std::shared_ptr<SpoolFile> file_;
-  SpooledList<Shape> shapes_;
-  std::vector<MotionLog> histories_;
+  SpooledList<Retired> models_;
 };
 
 }  // namespace splitfusion

@@ -26,6 +26,7 @@ void UnconfirmedNodes::Look(const LiveView& live, int surface,
     }
     const auto pixel = live.camera.PixelOf(places[i]);
     if (live.labels(pixel->y(), pixel->x()) != surface) continue;
+    if (state == DepthState::kObserved && facing[i] == 0) continue;
     ++counts_[i].hidden;
     counts_[i].facing += static_cast<int>(facing[i] != 0);
   }

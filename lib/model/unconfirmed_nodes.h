@@ -24,9 +24,10 @@ class UnconfirmedNodes {
   /// `shown`: of every one whether live points were found to be at what it
   /// carries (CanonicalPlaces): it is seen. `facing`: whether that faces the
   /// camera (NodesFacing()); `truncation`: of the surface's volume, metres. A
-  /// node that is not shown where a live pixel of the surface has something
-  /// within the truncation, or before it, is hidden by the surface. What
-  /// something else hides, or what is outside of the image, says nothing.
+  /// node that is not shown is hidden by the surface where a live pixel of the
+  /// surface lies before it, or within the truncation, if it faces the camera:
+  /// a thin limb's back does not. What something else hides, or what is outside
+  /// of the image, says nothing.
   void Look(const LiveView& live, int surface,
             const std::vector<Eigen::Vector3f>& places,
             const std::vector<char>& shown, const std::vector<char>& facing,

@@ -66,6 +66,12 @@ TEST_F(UnconfirmedNodesTest, WhatLiesUponWhatIsShownIsHiddenByIt) {
   EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, true}));
 }
 
+TEST_F(UnconfirmedNodesTest, TheBackOfSomethingThinIsNotHiddenByItsFront) {
+  facing_ = false;
+  Look({kWithinTruncation, kInside}, 30);
+  EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, true}));
+}
+
 TEST_F(UnconfirmedNodesTest, WhatWasSeenOftenIsConfirmed) {
   Look({kSeen, kInside}, 8);
   EXPECT_EQ(nodes_.Confirmed(8), Nodes({true, false}));
