@@ -9,7 +9,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kSurface = 1;
+constexpr int kLookedAt = 1;
 constexpr double kTruncation = 0.03;
 
 using Nodes = std::vector<char>;
@@ -28,7 +28,7 @@ class UnconfirmedNodesTest : public testing::Test {
     const PinholeCamera camera = SmallCamera();
     live_ = MakeLiveView(camera, WallDepth(camera, 2),
                          PlainColor(camera, {1, 2, 3}));
-    live_.labels.setTo(kSurface);
+    live_.labels.setTo(kLookedAt);
     const int right = camera.width * 3 / 4;
     live_.depth.colRange(right, camera.width) = 1;
     live_.labels.colRange(right, camera.width) = 2;
@@ -40,7 +40,7 @@ class UnconfirmedNodesTest : public testing::Test {
       for (const Eigen::Vector3f& place : places) {
         shown.push_back(place == kSeen);
       }
-      nodes_.Look(live_, kSurface, places, shown,
+      nodes_.Look(live_, kLookedAt, places, shown,
                   std::vector<char>(places.size(), facing_), kTruncation);
     }
   }

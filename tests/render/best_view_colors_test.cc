@@ -37,7 +37,7 @@ std::size_t Middle(const SurfaceModel& model) {
 
 /// Colour of the middle after frames of these colours.
 Color ColorOf(const SurfaceModel& model, const std::vector<cv::Vec3b>& bgr) {
-  BestViewColors colors(kSurface, model, 4);
+  BestViewColors colors(kPlateSurface, model, 4);
   for (std::size_t f = 0; f < bgr.size(); ++f) {
     Add(model.history.frames[f].frame, See(model, f, bgr[f]), &colors);
   }
@@ -95,7 +95,7 @@ TEST(BestViewColors, WhatMovesInTheImageIsBlurred) {
 TEST(BestViewColors, WhatLiesBesideLiveDepthIsNotSeen) {
   SurfaceModel model = Plate();
   AddFrame(0, Away(0), &model);
-  BestViewColors colors(kSurface, model, 4);
+  BestViewColors colors(kPlateSurface, model, 4);
   const PinholeCamera camera = SmallCamera();
   for (const double z : {0.9, 1.1}) {
     Add(0, View(WallDepth(camera, z), kGreen), &colors);
@@ -110,7 +110,7 @@ TEST(BestViewColors, NorAreHiddenNodesAndLostFrames) {
   std::fill(seen.begin(), seen.end(), false);
   EXPECT_EQ(ColorOf(model, {kGreen}), kFused);
   // Of a frame that it has no motions of.
-  BestViewColors colors(kSurface, model, 4);
+  BestViewColors colors(kPlateSurface, model, 4);
   Add(7, See(model, 0, kGreen), &colors);
   EXPECT_EQ(colors.Colors(), model.mesh.colors);
 }
@@ -118,7 +118,7 @@ TEST(BestViewColors, NorAreHiddenNodesAndLostFrames) {
 TEST(BestViewColors, BesideADepthEdgeIsTheColorOfSomethingElse) {
   SurfaceModel model = Plate();
   AddFrame(0, Away(0), &model);
-  BestViewColors colors(kSurface, model, 4);
+  BestViewColors colors(kPlateSurface, model, 4);
   Add(0, See(model, 0, kGreen), &colors);
   const auto found = colors.Colors();
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -133,10 +133,10 @@ TEST(BestViewColors, BesideADepthEdgeIsTheColorOfSomethingElse) {
 TEST(BestViewColors, WhereSomethingElseIsInViewAreNotTaken) {
   SurfaceModel model = Plate();
   AddFrame(0, Away(0), &model);
-  BestViewColors colors(kSurface, model, 4);
+  BestViewColors colors(kPlateSurface, model, 4);
   LiveView live = See(model, 0, kGreen);
   const int middle = live.labels.cols / 2;
-  live.labels.colRange(0, middle).setTo(kSurface + 1);
+  live.labels.colRange(0, middle).setTo(kPlateSurface + 1);
   Add(0, live, &colors);
   const auto found = colors.Colors();
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -159,7 +159,7 @@ TEST(BestViewColors, CountByTheirFit) {
   SurfaceModel model = Plate();
   AddFrame(0, Away(0), &model);
   AddFrame(1, Away(0), &model);
-  BestViewColors colors(kSurface, model, 4);
+  BestViewColors colors(kPlateSurface, model, 4);
   const PinholeCamera camera = SmallCamera();
   const double sigma = camera.noise.Sigma(1.0);
   Add(0, View(WallDepth(camera, 1), kGreen), &colors);
@@ -177,7 +177,7 @@ TEST(BestViewColors, WhatFacesAwayIsNotSeen) {
 TEST(BestViewColors, DrawsWhatHadBeenSeen) {
   SurfaceModel model = Plate();
   AddFrame(0, Away(0), &model);
-  BestViewColors colors(kSurface, model, 4);
+  BestViewColors colors(kPlateSurface, model, 4);
   Raster raster;
   raster.Clear(SmallCamera());
   colors.Place(0);
@@ -201,7 +201,7 @@ TEST(BestViewColors, DoNotDependOnTheNumberOfThreads) {
   for (const int threads : {1, 4}) {
     const tbb::global_control limit(
         tbb::global_control::max_allowed_parallelism, threads);
-    BestViewColors colors(kSurface, model, 4);
+    BestViewColors colors(kPlateSurface, model, 4);
     for (int f = 0; f < 5; ++f) {
       Add(f, See(model, f, cv::Vec3b(40 * f, 200 - 40 * f, 99)), &colors);
     }

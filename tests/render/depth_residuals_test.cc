@@ -23,8 +23,8 @@ DepthResiduals ResidualsAt(float off, const cv::Rect& other = {}) {
   AddFrame(7, Away(0), &model);
   LiveView live = See(model, 0, {0, 0, 0});
   live.depth += off;
-  if (!other.empty()) live.labels(other).setTo(kSurface + 1);
-  BestViewColors placed(kSurface, model, 4);
+  if (!other.empty()) live.labels(other).setTo(kPlateSurface + 1);
+  BestViewColors placed(kPlateSurface, model, 4);
   placed.Place(7);
   Raster raster;
   raster.Clear(live.camera);

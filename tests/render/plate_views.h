@@ -16,7 +16,7 @@ namespace splitfusion {
 
 using Color = std::array<std::uint8_t, 3>;
 
-constexpr int kSurface = 3;
+constexpr int kPlateSurface = 3;
 constexpr Color kFused = {10, 20, 30};
 
 /// A plate of 30 by 20 cm amid the view at 1 m.
@@ -44,7 +44,7 @@ inline void AddFrame(int frame, const Rigid3d& motion, SurfaceModel* model) {
 inline LiveView View(const cv::Mat_<float>& depth, const cv::Vec3b& bgr) {
   LiveView live =
       MakeLiveView(SmallCamera(), depth, PlainColor(SmallCamera(), bgr));
-  live.labels.setTo(kSurface);
+  live.labels.setTo(kPlateSurface);
   return live;
 }
 
