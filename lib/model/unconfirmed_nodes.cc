@@ -17,7 +17,7 @@ void UnconfirmedNodes::Look(const LiveView& live, int surface,
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (shown[i] != 0) {
       ++counts_[i].seen;
-      counts_[i].hidden = counts_[i].facing = 0;
+      counts_[i].hidden = 0;
       continue;
     }
     const DepthState state = LookAt(live, surface, places[i], tolerance);
@@ -26,7 +26,6 @@ void UnconfirmedNodes::Look(const LiveView& live, int surface,
     }
     const auto pixel = live.camera.PixelOf(places[i]);
     if (live.labels(pixel->y(), pixel->x()) != surface) continue;
-    if (state == DepthState::kObserved && facing[i] == 0) continue;
     ++counts_[i].hidden;
     counts_[i].facing += static_cast<int>(facing[i] != 0);
   }

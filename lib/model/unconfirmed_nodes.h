@@ -25,9 +25,8 @@ class UnconfirmedNodes {
   /// carries (CanonicalPlaces): it is seen. `facing`: whether that faces the
   /// camera (NodesFacing()); `truncation`: of the surface's volume, metres. A
   /// node that is not shown is hidden by the surface where a live pixel of the
-  /// surface lies before it, or within the truncation, if it faces the camera:
-  /// a thin limb's back does not. What something else hides, or what is outside
-  /// of the image, says nothing.
+  /// surface lies before it or within the truncation. What something else hides,
+  /// or what is outside of the image, says nothing.
   void Look(const LiveView& live, int surface,
             const std::vector<Eigen::Vector3f>& places,
             const std::vector<char>& shown, const std::vector<char>& facing,
@@ -37,11 +36,12 @@ class UnconfirmedNodes {
   /// None if `sights` is 0.
   std::vector<char> Confirmed(int sights) const;
 
-  /// Of every node whether the surface itself has hidden it, since it was seen
-  /// last, in `hidden` frames and more; if it was seen in `sights` frames or
-  /// more, in as many times more, and those alone count then in which it faces
-  /// the camera: one's back is hidden as long as one is seen from the front.
-  /// None if `sights` is 0.
+  /// Of every node whether it is to be forgotten. One that was seen in less
+  /// than `sights` frames: if the surface itself has hidden it, since it was
+  /// seen last, in `hidden` frames. One that was seen in n times `sights`: if
+  /// the surface has hidden it in n times `hidden` of all frames in which it
+  /// faced the camera; one's back is hidden as long as one is seen from the
+  /// front. None if `sights` is 0.
   std::vector<char> Nodes(int sights, int hidden) const;
 
   /// Begins to count anew for these nodes: what they carried is gone.
@@ -64,7 +64,7 @@ class UnconfirmedNodes {
   struct Counts {
     int seen = 0;    ///< In which it was.
     int hidden = 0;  ///< In which the surface hid it, since it was seen last.
-    int facing = 0;  ///< Of those, in which it faced the camera.
+    int facing = 0;  ///< In which it did although it faced the camera.
 
     template <typename Archive>
     void Serialize(Archive* archive) {

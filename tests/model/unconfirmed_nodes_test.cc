@@ -66,12 +66,6 @@ TEST_F(UnconfirmedNodesTest, WhatLiesUponWhatIsShownIsHiddenByIt) {
   EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, true}));
 }
 
-TEST_F(UnconfirmedNodesTest, TheBackOfSomethingThinIsNotHiddenByItsFront) {
-  facing_ = false;
-  Look({kWithinTruncation, kInside}, 30);
-  EXPECT_EQ(nodes_.Nodes(10, 20), Nodes({false, true}));
-}
-
 TEST_F(UnconfirmedNodesTest, WhatWasSeenOftenIsConfirmed) {
   Look({kSeen, kInside}, 8);
   EXPECT_EQ(nodes_.Confirmed(8), Nodes({true, false}));
@@ -86,6 +80,15 @@ TEST_F(UnconfirmedNodesTest, WhatWasSeenForLongIsBelievedForLonger) {
   EXPECT_EQ(nodes_.Nodes(9, 20), Nodes({true}));
   Look({kInside}, 1);
   EXPECT_EQ(nodes_.Nodes(4, 20), Nodes({true}));
+}
+
+TEST_F(UnconfirmedNodesTest, AFewSightsDoNotSaveWhatIsMostlyHidden) {
+  for (int i = 0; i < 9; ++i) {
+    Look({kInside}, 5);
+    Look({kSeen}, 1);
+  }
+  EXPECT_EQ(nodes_.Nodes(9, 45), Nodes({true}));
+  EXPECT_EQ(nodes_.Nodes(9, 46), Nodes({false}));
 }
 
 TEST_F(UnconfirmedNodesTest, WhatWasSeenFromTheOtherSideIsKept) {
