@@ -13,6 +13,7 @@
 #include "splitfusion/lib/base/archive_file.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/median.h"
+#include "splitfusion/lib/base/process_memory.h"
 #include "splitfusion/lib/model/surface_uncertainty.h"
 #include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/report/frame_pictures.h"
@@ -25,6 +26,9 @@ namespace {
 
 /// Of checkpoint.bin: another one with every change of what it holds.
 constexpr std::uint32_t kCheckpointVersion = SplitFusion::kStateVersion;
+
+/// Frames after which freed memory goes back to the system.
+constexpr int kFramesOfFreedMemory = 100;  // Speed.
 
 /// Indices of frames without usable images.
 std::vector<int> SkippedFrames(const ImageFolderReader& reader) {
@@ -177,6 +181,7 @@ void SequenceRun::ProcessFrames() {
 
 bool SequenceRun::ProcessNext() {
   const Stopwatch frame_time;
+  if (done_ % kFramesOfFreedMemory == 0) ReturnFreedMemory();
   std::optional<PreparedFrame> prepared = frames_->Next();
   if (!prepared) return false;
   const Frame frame = prepared->frame;

@@ -18,6 +18,11 @@ std::int64_t AvailableMemoryBytes();
 /// whole program. Does nothing where the C library is not glibc.
 void KeepFreedMemory();
 
+/// Gives what is free at the moment back to the system all the same: what
+/// thousands of frames leave between what is still used adds up. Does nothing
+/// where the C library is not glibc.
+void ReturnFreedMemory();
+
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_BASE_PROCESS_MEMORY_H_
