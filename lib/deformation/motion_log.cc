@@ -54,6 +54,23 @@ NodeMotion MotionFrom(const char* bytes) {
 
 }  // namespace
 
+MotionLog::Block MotionLog::Block::Part(const std::vector<char>& chosen) const {
+  Block part;
+  part.frames = frames;
+  part.nodes = nodes;
+  part.nodes_ever = nodes_ever;
+  part.changes = changes;
+  std::vector<int> known;
+  for (std::size_t k = 0; k < numbers->size(); ++k) {
+    const int number = (*numbers)[k];
+    if (chosen[number] == 0) continue;
+    known.push_back(number);
+    part.places.push_back(places.empty() ? static_cast<int>(k) : places[k]);
+  }
+  part.numbers = std::make_shared<const std::vector<int>>(std::move(known));
+  return part;
+}
+
 int MotionLog::BlockOf(int i) const {
   return static_cast<int>(
       std::upper_bound(block_ends_.begin(), block_ends_.end(), i) -
@@ -93,8 +110,8 @@ FrameMotions MotionLog::Load(int i) const {
   const Block& block = *blocks_[BlockOf(i)];
   const SpooledFrame& head = HeadOf(i);
   const std::vector<int>& numbers = *block.numbers;
-  const std::size_t seen_from = numbers.size() * sizeof(SpooledMotion);
-  std::vector<char> bytes(seen_from + (head.has_seen ? numbers.size() : 0));
+  const std::size_t seen_from = block.nodes * sizeof(SpooledMotion);
+  std::vector<char> bytes(seen_from + (head.has_seen ? block.nodes : 0));
   file_->Read(head.offset, bytes.data(), bytes.size());
   // Of nodes that matter: most that there ever were are none of a part's.
   const std::vector<char> needed = Needed();
@@ -108,18 +125,19 @@ FrameMotions MotionLog::Load(int i) const {
     seen.push_back(was_seen);
   };
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    add(numbers[k], MotionFrom(&bytes[k * sizeof(SpooledMotion)]),
-        head.has_seen ? bytes[seen_from + k] : char{false});
+    const std::size_t at = block.places.empty() ? k : block.places[k];
+    add(numbers[k], MotionFrom(&bytes[at * sizeof(SpooledMotion)]),
+        head.has_seen ? bytes[seen_from + at] : char{false});
   }
   for (const Births& births : births_) {
-    if (births.first < block.nodes_ever) continue;
+    if (births.numbers->front() < block.nodes_ever) continue;
     std::vector<NodeMotion> of_carriers;
     for (const int carrier : births.nodes->carriers()) {
       of_carriers.push_back(motions[place[carrier]]);
     }
     const std::vector<NodeMotion> blended = births.nodes->Blended(of_carriers);
     for (std::size_t i = 0; i < blended.size(); ++i) {
-      add(births.first + static_cast<int>(i), blended[i], false);
+      add((*births.numbers)[i], blended[i], false);
     }
   }
   FrameMotions frame{head.index, head.tracked, {}, {}};
@@ -180,10 +198,15 @@ void MotionLog::Grow(const NodeBirths& births, const NodeChange& change) {
     change.Apply(&frame.seen);
     recent_bytes_ += BytesInMemory(frame);
   }
-  births_.push_back({nodes_ever_, std::make_shared<const NodeBirths>(
-                                      births.Renumbered(*numbers_))});
+  std::vector<int> born(births.size());
+  std::iota(born.begin(), born.end(), nodes_ever_);
   std::vector<int> numbers = *numbers_;
-  for (int i = 0; i < births.size(); ++i) numbers.push_back(nodes_ever_ + i);
+  numbers.insert(numbers.end(), born.begin(), born.end());
+  if (!born.empty()) {
+    births_.push_back(
+        {std::make_shared<const std::vector<int>>(std::move(born)),
+         std::make_shared<const NodeBirths>(births.Renumbered(*numbers_))});
+  }
   change.Apply(&numbers);
   numbers_ = std::make_shared<const std::vector<int>>(std::move(numbers));
   nodes_ever_ += births.size();
@@ -196,9 +219,19 @@ void MotionLog::ForgetNeedlessBirths() {
   for (const int number : *numbers_) needed[number] = true;
   std::vector<Births> kept;
   for (auto births = births_.rbegin(); births != births_.rend(); ++births) {
-    const auto begin = needed.begin() + births->first;
-    const auto end = begin + births->nodes->size();
-    if (std::find(begin, end, true) == end) continue;
+    const std::vector<int>& numbers = *births->numbers;
+    // All frames in the file have motions of what was born before them.
+    if (blocks_.empty() || numbers.front() < blocks_.front()->nodes_ever) break;
+    std::vector<char> chosen;
+    for (const int number : numbers) chosen.push_back(needed[number]);
+    const auto count = std::count(chosen.begin(), chosen.end(), true);
+    if (count == 0) continue;
+    if (count < static_cast<std::ptrdiff_t>(numbers.size())) {
+      births->nodes =
+          std::make_shared<const NodeBirths>(births->nodes->Part(chosen));
+      births->numbers =
+          std::make_shared<const std::vector<int>>(Chosen(numbers, chosen));
+    }
     for (const int carrier : births->nodes->carriers()) needed[carrier] = true;
     kept.push_back(std::move(*births));
   }
@@ -208,7 +241,11 @@ void MotionLog::ForgetNeedlessBirths() {
 
 /// Moves the first frames that lie in memory to the file.
 void MotionLog::Spool() {
-  Block block{{}, numbers_, nodes_ever_, changes_};
+  Block block;
+  block.numbers = numbers_;
+  block.nodes = static_cast<int>(numbers_->size());
+  block.nodes_ever = nodes_ever_;
+  block.changes = changes_;
   while (!recent_.empty() && block.frames.size() < kBlockFrames) {
     const FrameMotions& frame = recent_.front();
     const std::vector<char> bytes = BytesOfFrame(frame);
@@ -245,9 +282,7 @@ MotionLog MotionLog::Part(const std::vector<char>& nodes,
     rest.frames.erase(rest.frames.begin(),
                       rest.frames.begin() + (begin - block->frames.begin()));
     part.spooled_ += static_cast<int>(rest.frames.size());
-    part.blocks_.push_back(begin == block->frames.begin()
-                               ? block
-                               : std::make_shared<const Block>(rest));
+    part.blocks_.push_back(std::make_shared<const Block>(std::move(rest)));
     part.block_ends_.push_back(part.spooled_);
   }
   for (const FrameMotions& frame : recent_) {
@@ -264,6 +299,10 @@ MotionLog MotionLog::Part(const std::vector<char>& nodes,
   part.births_ = births_;
   part.changes_ = changes_;
   part.ForgetNeedlessBirths();
+  const std::vector<char> needed = part.Needed();
+  for (std::shared_ptr<const Block>& block : part.blocks_) {
+    block = std::make_shared<const Block>(block->Part(needed));
+  }
   part.Finish();
   return part;
 }
@@ -294,7 +333,8 @@ void MotionLog::SerializeIndex(Archive* archive) {
   for (std::shared_ptr<const Block>& shared : blocks_) {
     Block block;
     if constexpr (!Archive::kReads) block = *shared;
-    (*archive)(block.frames, block.nodes_ever, block.changes);
+    (*archive)(block.frames, block.places, block.nodes, block.nodes_ever,
+               block.changes);
     SerializeShared(archive, &block.numbers);
     if constexpr (Archive::kReads) {
       shared = std::make_shared<const Block>(std::move(block));
@@ -305,7 +345,7 @@ void MotionLog::SerializeIndex(Archive* archive) {
   SerializeShared(archive, &numbers_);
   births_.resize(archive->Count(births_.size(), 1));
   for (Births& births : births_) {
-    (*archive)(births.first);
+    SerializeShared(archive, &births.numbers);
     SerializeShared(archive, &births.nodes);
   }
 }

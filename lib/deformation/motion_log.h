@@ -117,13 +117,20 @@ class MotionLog {
   struct Block {
     std::vector<SpooledFrame> frames;                 ///< Ascending.
     std::shared_ptr<const std::vector<int>> numbers;  ///< Of the nodes then.
-    int nodes_ever = 0;                               ///< Until then.
-    int changes = 0;                                  ///< As `nodes_ever`.
+    /// Of a part, which knows of some of the nodes alone: where they lie in
+    /// the frames.
+    std::vector<int> places;
+    int nodes = 0;       ///< In the frames.
+    int nodes_ever = 0;  ///< Until then.
+    int changes = 0;     ///< As `nodes_ever`.
+
+    /// That of some nodes, of every number whether it is one of them.
+    Block Part(const std::vector<char>& chosen) const;
   };
-  /// Nodes that were born together.
+  /// Nodes that were born together, some of them.
   struct Births {
-    int first = 0;                            ///< The first one's number.
-    std::shared_ptr<const NodeBirths> nodes;  ///< By number.
+    std::shared_ptr<const std::vector<int>> numbers;  ///< Ascending.
+    std::shared_ptr<const NodeBirths> nodes;          ///< By `numbers`.
   };
 
   int BlockOf(int i) const;

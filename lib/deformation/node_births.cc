@@ -3,6 +3,8 @@
 #include <map>
 #include <utility>
 
+#include "splitfusion/lib/base/chosen.h"
+
 namespace splitfusion {
 
 NodeBirths::NodeBirths(const DeformationGraph& graph,
@@ -30,6 +32,25 @@ NodeBirths NodeBirths::Renumbered(const std::vector<int>& numbers) const {
   NodeBirths births = *this;
   for (int& node : births.carriers_) node = numbers[node];
   return births;
+}
+
+NodeBirths NodeBirths::Part(const std::vector<char>& nodes) const {
+  NodeBirths part;
+  part.places_ = Chosen(places_, nodes);
+  part.skinning_ = Chosen(skinning_, nodes);
+  std::vector<int> index(carriers_.size(), -1);
+  for (Skinning& skinning : part.skinning_) {
+    for (int k = 0; k < skinning.count; ++k) {
+      const int carrier = skinning.nodes[k];
+      if (index[carrier] < 0) {
+        index[carrier] = static_cast<int>(part.carriers_.size());
+        part.carriers_.push_back(carriers_[carrier]);
+        part.carrier_positions_.push_back(carrier_positions_[carrier]);
+      }
+      skinning.nodes[k] = index[carrier];
+    }
+  }
+  return part;
 }
 
 std::vector<NodeMotion> NodeBirths::Blended(

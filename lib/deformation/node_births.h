@@ -28,6 +28,9 @@ class NodeBirths {
   /// The same where node i has the number `numbers[i]`.
   NodeBirths Renumbered(const std::vector<int>& numbers) const;
 
+  /// Some of the nodes, of every one whether it is.
+  NodeBirths Part(const std::vector<char>& nodes) const;
+
   /// The motions of the new nodes in one frame, of those of carriers() in it.
   std::vector<NodeMotion> Blended(const std::vector<NodeMotion>& motions) const;
 

@@ -26,7 +26,8 @@ constexpr int kFrames = 90;
 /// A plate that is tracked while it slides under the camera: every few frames
 /// nodes are born at one end and forgotten at the other.
 struct SlidingPlate {
-  explicit SlidingPlate(std::size_t memory) : log(std::make_shared<SpoolFile>(), memory) {
+  explicit SlidingPlate(std::size_t memory)
+      : log(std::make_shared<SpoolFile>(), memory) {
     graph = CoverWithNodes(mesh, 0.04);
     for (int frame = 0; frame < kFrames; ++frame) Track(frame);
   }
@@ -127,6 +128,30 @@ TEST(MotionLog, APartIsSomeNodesFromAFrameOn) {
   EXPECT_TRUE(
       spooled.log.Part(std::vector<char>(spooled.graph.size(), true), 1000)
           .empty());
+}
+
+/// Bytes of all that is known of a complete log beside its motions.
+std::size_t IndexBytes(MotionLog log) {
+  std::stringstream stream;
+  ArchiveWriter writer(&stream);
+  log.SerializeIndex(&writer);
+  writer.Flush();
+  return stream.str().size();
+}
+
+TEST(MotionLog, APartKnowsOfItsOwnNodesAlone) {
+  // Thousands of parts of a long recording lie in the file: what is known of
+  // each must not be what is known of the whole.
+  SlidingPlate plate(kLittle);
+  std::vector<char> nodes(plate.graph.size(), true);
+  const std::size_t whole = IndexBytes(plate.log.Part(nodes, 0));
+  nodes.assign(nodes.size(), false);
+  nodes[0] = true;
+  const MotionLog part = plate.log.Part(nodes, 0);
+  ASSERT_EQ(part.size(), kFrames);
+  constexpr std::size_t kHeads = std::size_t{kFrames} * 64;
+  EXPECT_LT(IndexBytes(part), kHeads);
+  EXPECT_GT(whole, 2 * kHeads);
 }
 
 TEST(MotionLog, IsRestoredAndGoesOnAsBefore) {
