@@ -40,7 +40,8 @@ class SpooledList {
         {file_->Append(bytes.data(), bytes.size()), bytes.size()});
   }
 
-  /// The value i, 0..size() - 1. `value`: of what is not saved of it.
+  /// The value i, 0..size() - 1. `value`: what it is read into, which has
+  /// already what Serialize() of it leaves out.
   ///
   /// @throw InputError if the file cannot be read.
   T At(int i, T value = T()) const {

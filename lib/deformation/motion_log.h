@@ -117,14 +117,15 @@ class MotionLog {
   struct Block {
     std::vector<SpooledFrame> frames;                 ///< Ascending.
     std::shared_ptr<const std::vector<int>> numbers;  ///< Of the nodes then.
-    /// Of a part, which knows of some of the nodes alone: where they lie in
-    /// the frames.
+    /// Of a part, which knows of some of the nodes alone: indices of these in
+    /// a frame, by `numbers`; else empty, as all nodes lie there in order.
     std::vector<int> places;
     int nodes = 0;       ///< In the frames.
     int nodes_ever = 0;  ///< Until then.
     int changes = 0;     ///< As `nodes_ever`.
 
-    /// That of some nodes, of every number whether it is one of them.
+    /// The same frames with those nodes alone whose entry of `chosen` (by
+    /// number, of all nodes that there ever were) is not 0.
     Block Part(const std::vector<char>& chosen) const;
   };
   /// Nodes that were born together, some of them.

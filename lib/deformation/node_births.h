@@ -28,7 +28,8 @@ class NodeBirths {
   /// The same where node i has the number `numbers[i]`.
   NodeBirths Renumbered(const std::vector<int>& numbers) const;
 
-  /// Some of the nodes, of every one whether it is.
+  /// The new nodes whose entry of `nodes` (size()) is not 0, in their order,
+  /// with the carriers that these are blended from.
   NodeBirths Part(const std::vector<char>& nodes) const;
 
   /// The motions of the new nodes in one frame, of those of carriers() in it.
