@@ -33,8 +33,9 @@ constexpr double kAroundSigma = 25;
 constexpr float kNoiseGradient = 2;
 /// Blur of the strengths, pixels: the first reaches as far as the steps of the
 /// search, the last one is an edge's own width.
-constexpr std::array<double, 4> kBlurs = {10, 5, 2.5, 1.2};
-constexpr std::size_t kSearchPoints = 8;  // Speed: every so many are asked.
+constexpr std::array<double, 2> kBlurs = {2.5, 1.2};
+constexpr std::size_t kSearchPoints = 16;  // Speed: every so many are asked.
+constexpr std::size_t kStartPoints = 24;   // Speed: as above, from its starts.
 /// Of the search over shifts of the whole image, pixels of 640 in a row.
 constexpr int kSearchStep = 6;
 constexpr int kSearchReach = 60;
@@ -46,6 +47,8 @@ constexpr double kFocalSigma = 0.1;  // Of the logarithm of the ratio.
 /// Focal lengths that are searched, of that of the depth camera.
 constexpr std::array<double, 7> kFocalRatios = {0.8, 0.85, 0.9, 0.95,
                                                 1,   1.05, 1.1};
+/// Places beside the depth camera that are searched, metres.
+constexpr std::array<double, 3> kSides = {-0.025, 0, 0.025};
 /// Depth edges of structured light and stereo lie beside the true ones by so
 /// much, pixels.
 constexpr double kEdgeError = 3;
@@ -180,34 +183,32 @@ double MeanStrength(const EdgeFrame& frame, const PinholeCamera& camera,
   return sum / count;
 }
 
-/// The best rotation and focal length of a coarse search.
-Parameters Search(const std::vector<EdgeFrame>& frames,
-                  const PinholeCamera& camera) {
+/// The shift of the whole image, as a rotation, at which the colour is
+/// strongest with a focal length and a colour camera beside.
+Parameters BestShift(const std::vector<EdgeFrame>& frames,
+                     const PinholeCamera& camera, double ratio, double side) {
   const double unit = camera.width / 640.0;  // Unit.
-  std::vector<Parameters> tried;
-  for (const double ratio : kFocalRatios) {
-    for (int dv = -kSearchReach / 2; dv <= kSearchReach / 2;
-         dv += kSearchStep) {
-      for (int du = -kSearchReach; du <= kSearchReach; du += kSearchStep) {
-        tried.push_back({-dv * unit / camera.fy, du * unit / camera.fx, 0, 0, 0,
-                         0, std::log(ratio)});
+  Parameters best{};
+  double most = -1;
+  for (int dv = -kSearchReach / 2; dv <= kSearchReach / 2; dv += kSearchStep) {
+    for (int du = -kSearchReach; du <= kSearchReach; du += kSearchStep) {
+      const Parameters p{
+          -dv * unit / camera.fy, du * unit / camera.fx, 0, side, 0, 0,
+          std::log(ratio)};
+      double strength = 0;
+      for (const EdgeFrame& frame : frames) {
+        strength += MeanStrength(frame, camera, p, 0, kSearchPoints);
       }
+      if (strength > most) most = strength, best = p;
     }
   }
-  std::vector<double> strength(tried.size());
-  tbb::parallel_for(std::size_t{0}, tried.size(), [&](std::size_t i) {
-    for (const EdgeFrame& frame : frames) {
-      strength[i] += MeanStrength(frame, camera, tried[i], 0, kSearchPoints);
-    }
-  });
-  return tried[std::max_element(strength.begin(), strength.end()) -
-               strength.begin()];
+  return best;
 }
 
 /// Each frame counts as one measurement of the mean strength, with the spread
-/// of a single point's.
-void Refine(const std::vector<EdgeFrame>& frames, const PinholeCamera& camera,
-            std::size_t blur, Parameters* p) {
+/// of a single point's; every `step`-th point is asked. Returns the least cost.
+double Refine(const std::vector<EdgeFrame>& frames, const PinholeCamera& camera,
+              std::size_t blur, std::size_t step, Parameters* p) {
   std::vector<std::unique_ptr<MissingStrength::Grid>> grids;
   std::vector<
       std::unique_ptr<ceres::BiCubicInterpolator<MissingStrength::Grid>>>
@@ -220,11 +221,13 @@ void Refine(const std::vector<EdgeFrame>& frames, const PinholeCamera& camera,
     strengths.push_back(
         std::make_unique<ceres::BiCubicInterpolator<MissingStrength::Grid>>(
             *grids.back()));
-    const double scale = 1 / std::sqrt(double(frame.points.size()));
-    for (const Eigen::Vector3d& point : frame.points) {
+    const std::size_t count = (frame.points.size() + step - 1) / step;
+    const double scale = 1 / std::sqrt(double(count));
+    for (std::size_t i = 0; i < frame.points.size(); i += step) {
       problem.AddResidualBlock(
           new ceres::AutoDiffCostFunction<MissingStrength, 1, 7>(
-              new MissingStrength{camera, *strengths.back(), point, scale}),
+              new MissingStrength{camera, *strengths.back(), frame.points[i],
+                                  scale}),
           nullptr, p->data());
     }
   }
@@ -237,6 +240,34 @@ void Refine(const std::vector<EdgeFrame>& frames, const PinholeCamera& camera,
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  return summary.final_cost;
+}
+
+double Refine(const std::vector<EdgeFrame>& frames, const PinholeCamera& camera,
+              std::size_t step, Parameters* p) {
+  double cost = 0;
+  for (std::size_t blur = 0; blur < kBlurs.size(); ++blur) {
+    cost = Refine(frames, camera, blur, step, p);
+  }
+  return cost;
+}
+
+/// The parameters of least cost: edges fit halfway at many wrong places, so
+/// that one start and ever less blur end there; all starts are refined.
+Parameters Minimise(const std::vector<EdgeFrame>& frames,
+                    const PinholeCamera& camera) {
+  constexpr std::size_t kStarts = kSides.size() * kFocalRatios.size();
+  std::array<Parameters, kStarts> starts;
+  std::array<double, kStarts> costs;
+  tbb::parallel_for(std::size_t{0}, kStarts, [&](std::size_t i) {
+    starts[i] = BestShift(frames, camera, kFocalRatios[i % kFocalRatios.size()],
+                          kSides[i / kFocalRatios.size()]);
+    costs[i] = Refine(frames, camera, kStartPoints, &starts[i]);
+  });
+  Parameters best =
+      starts[std::min_element(costs.begin(), costs.end()) - costs.begin()];
+  Refine(frames, camera, 1, &best);
+  return best;
 }
 
 ColorCamera ToColorCamera(const Parameters& p, const PinholeCamera& camera) {
@@ -294,10 +325,7 @@ ColorCameraEstimate EstimateColorCamera(const std::vector<Frame>& frames,
   const std::vector<EdgeFrame> edges = FindEdges(frames, camera);
   estimate.frames = static_cast<int>(edges.size());
   if (estimate.frames < 2) return estimate;
-  Parameters p = Search(edges, camera);
-  for (std::size_t blur = 0; blur < kBlurs.size(); ++blur) {
-    Refine(edges, camera, blur, &p);
-  }
+  const Parameters p = Minimise(edges, camera);
   estimate.camera = ToColorCamera(p, camera);
   Judge(edges, camera, p, &estimate);
   return estimate;

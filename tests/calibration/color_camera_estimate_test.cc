@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <vector>
 
+#include "support/shared_data.h"
 #include "support/two_cameras.h"
 
 namespace splitfusion {
@@ -41,6 +43,27 @@ TEST(ColorCameraEstimate, FindsTheCameraOfAKinectThatIsNotRegistered) {
             1.0)
             << point.transpose();
       }
+    }
+  }
+}
+
+// Edges fit halfway at many wrong places, and more so where frames show the
+// same: the colour camera of both recordings has a focal length of 525 pixels.
+TEST(ColorCameraEstimate, IsThatOfTheWholeRecordingOnEveryStretch) {
+  for (const char* name : {"7scenes_redkitchen", "7scenes_redkitchen_b"}) {
+    const std::string sequence = SharedData(name);
+    SKIP_WITHOUT_SHARED_DATA(sequence, name);
+    for (const int first : {0, 40}) {
+      ReaderOptions options;
+      options.first_frame = first;
+      options.max_frames = 20;
+      const ColorCameraEstimate estimate =
+          EstimateColorCamera(ImageFolderReader(sequence, options));
+      EXPECT_TRUE(estimate.IsNeeded()) << estimate.Text();
+      EXPECT_NEAR(estimate.camera.fx, 525, 5) << estimate.Text();
+      EXPECT_NEAR(estimate.camera.color_from_depth.translation().x(), -0.02,
+                  0.01)
+          << estimate.Text();
     }
   }
 }
