@@ -131,9 +131,9 @@ Json SummaryWith(const Refinement& refinement, Json summary) {
       surface["stretched"] = found->second;
     }
   }
-  const double before = summary["seconds_refining"];
+  const double before = summary.value("seconds_refining", 0.0);
   const double frames = std::max(1, summary["frames"].get<int>());
-  const double all = summary["seconds_per_frame_all_passes"];
+  const double all = summary.value("seconds_per_frame_all_passes", 0.0);
   summary["seconds_refining"] = refinement.seconds;
   summary["seconds_per_frame_all_passes"] =
       all + (refinement.seconds - before) / frames;

@@ -30,6 +30,9 @@ constexpr std::uint32_t kCheckpointVersion = SplitFusion::kStateVersion;
 /// Frames after which freed memory goes back to the system.
 constexpr int kFramesOfFreedMemory = 100;  // Speed.
 
+/// Somebody wants a run to stop.
+struct Interruption {};
+
 /// Indices of frames without usable images.
 std::vector<int> SkippedFrames(const ImageFolderReader& reader) {
   std::vector<int> frames;
@@ -73,13 +76,12 @@ void SequenceRun::Execute() {
       BeginAnew();
       ProcessFrames();
     }
-    WriteEnd();
+    if (WriteEnd()) return;
   } catch (const std::exception& error) {
     folder_.CheckHeld();  // If it is gone, that is why no file can be written.
     folder_.RecordFailure(error.what());
     throw;
   }
-  if (done_ == work_->reader.size()) return;
   throw std::runtime_error("interrupted after " + std::to_string(done_) +
                            " of " + std::to_string(work_->reader.size()) +
                            " frames; what was computed is in " + where_ +
@@ -288,7 +290,9 @@ void SequenceRun::ShowProgress() const {
   hooks_.shown(progress);
 }
 
+/// @throw Interruption
 void SequenceRun::ShowPass(RunPass pass, int done, int total) const {
+  if (hooks_.interrupted && hooks_.interrupted()) throw Interruption();
   if (!hooks_.shown) return;
   hooks_.shown(
       {pass, done, total, static_cast<int>(work_->fusion.surfaces().size())});
@@ -300,7 +304,7 @@ bool SequenceRun::FindLoops() {
   const PipelineOptions& options = work_->fusion.options();
   const bool open = options.close_loops && options_.from.run.empty() &&
                     work_->reader.options().trajectory.empty() &&
-                    !closure_.report.fused_anew;
+                    closure_.report.key_frames == 0;  // Not looked for yet.
   if (!open || done_ < work_->reader.size()) return false;
   closure_ = work_->fusion.CloseCameraLoops();
   LoopReport& report = closure_.report;
@@ -321,6 +325,7 @@ void SequenceRun::BeginAnew() {
   }
   frames_.reset();  // Its thread uses the others.
   const UsualMisfit misfit = work_->fusion.camera_misfit();
+  const RunTime time_before = directory_->time_before();
   work_.reset();
   directory_.reset();
   work_ = make_();
@@ -331,6 +336,7 @@ void SequenceRun::BeginAnew() {
         std::filesystem::path(folder_.unfinished().root()) / name);
   }
   OpenDirectory(/*goes_on=*/false);
+  directory_->set_time_before(time_before);
   coarse_.clear();
   done_ = done_before_ = 0;
   since_start_.Restart();
@@ -350,15 +356,20 @@ void SequenceRun::CheckReconstructed() const {
                    std::to_string(done_) + " frames: " + ExpectedDepth());
 }
 
-void SequenceRun::WriteEnd() {
+/// Whether the run is complete.
+bool SequenceRun::WriteEnd() {
   if (done_ == work_->reader.size()) {
     WarnOfUnknownClasses();
     WarnOfSilentTerms();
-    WriteResults(RunStatus::kComplete);
-  } else {
-    SaveCheckpoint();
-    WriteResults(RunStatus::kIncomplete);
+    try {
+      WriteResults(RunStatus::kComplete);
+      return true;
+    } catch (const Interruption&) {  // Of a pass over all frames.
+    }
   }
+  SaveCheckpoint();
+  WriteResults(RunStatus::kIncomplete);
+  return false;
 }
 
 void SequenceRun::WriteResults(RunStatus status, const std::string& error) {
@@ -378,10 +389,7 @@ void SequenceRun::WriteSurfaces(bool all_frames) {
   frames_.reset();  // What reads ahead may change what the reader gives.
   Stopwatch stopwatch;
   const SplitFusion& fusion = work_->fusion;
-  if (all_frames) {
-    work_->fusion.PlaceLostCamera();
-    directory_->WriteTrajectory(fusion.trajectory());
-  }
+  if (all_frames) work_->fusion.PlaceLostCamera();
   work_->fusion.Finish();
   SurfaceModels models = ModelsOf(fusion);
   std::error_code ignored;  // That of an end before this one.
@@ -395,6 +403,7 @@ void SequenceRun::WriteSurfaces(bool all_frames) {
     ColorModels(&models, &residuals);
   }
   directory_->AddColoringSeconds(stopwatch.Restart());
+  if (all_frames) directory_->WriteTrajectory(fusion.trajectory());
   for (const auto& [id, surface] : fusion.surfaces()) {
     const SurfaceModel& model = models.at(id);
     const StretchedArea stretch =

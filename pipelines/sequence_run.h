@@ -129,7 +129,7 @@ class SequenceRun {
   void BeginAnew();
 
   void CheckReconstructed() const;
-  void WriteEnd();
+  bool WriteEnd();
   void WriteResults(RunStatus status, const std::string& error = "");
   /// All surfaces; `all_frames`: with hidden motions and colours that take
   /// passes over all of them.

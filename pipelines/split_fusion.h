@@ -112,7 +112,7 @@ class SplitFusion {
   const LabelImage& labels() const { return live_.labels; }
 
   /// Version of what Serialize() writes: another one with every change of it.
-  static constexpr std::uint32_t kStateVersion = 25;  // Format.
+  static constexpr std::uint32_t kStateVersion = 26;  // Format.
 
   /// Saves or restores everything that later frames and results depend on, see
   /// lib/base/archive.h: one made with the same arguments goes on as this one

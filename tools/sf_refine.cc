@@ -35,6 +35,8 @@ int Run(const std::vector<std::string>& arguments) {
   CheckOption(arguments.size() == 1, "RUN", arguments.size(),
               "one run directory");
   CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
+  CheckIsOutside("RUN", arguments.front(), FLAGS_output, "--output");
+  CheckIsOutside("output", FLAGS_output, arguments.front(), "RUN");
   HiddenMotionOptions options;
   options.smoothness = FLAGS_refine_smoothness;
   options.window = FLAGS_refine_window;

@@ -67,18 +67,6 @@ DECLARE_int32(threads);
 namespace splitfusion {
 namespace {
 
-/// Refuses to replace what the run is to read from.
-void CheckNotInOutput(const std::string& flag, const std::string& input) {
-  namespace fs = std::filesystem;
-  if (!FLAGS_overwrite || input.empty() || !fs::exists(input)) return;
-  const fs::path output = fs::weakly_canonical(FLAGS_output);
-  const fs::path path = fs::weakly_canonical(input);
-  const auto end =
-      std::mismatch(output.begin(), output.end(), path.begin(), path.end());
-  CheckOption(end.first != output.end(), flag, input,
-              "a folder outside of --output, which is overwritten");
-}
-
 /// The run directory as the flags ask for it.
 RunFolder OpenRunFolder(const RunIdentity& identity) {
   RunFolderOptions options;
@@ -195,10 +183,13 @@ void CheckValues() {
 
 void CheckOutput() {
   CheckOption(!FLAGS_output.empty(), "output", "''", "a folder to write");
-  CheckNotInOutput("sequence", FLAGS_sequence);
-  CheckNotInOutput("masks", FLAGS_masks);
-  CheckNotInOutput("from", FLAGS_from);
-  CheckNotInOutput("trajectory", FLAGS_trajectory);
+  if (!FLAGS_overwrite) return;
+  for (const auto& [flag, path] :
+       {std::pair("sequence", FLAGS_sequence), std::pair("masks", FLAGS_masks),
+        std::pair("from", FLAGS_from),
+        std::pair("trajectory", FLAGS_trajectory)}) {
+    CheckIsOutside(flag, path, FLAGS_output, "--output, which is overwritten");
+  }
 }
 
 /// @throw OptionError on what cannot be had together.

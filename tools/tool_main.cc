@@ -5,6 +5,7 @@
 #include <glog/logging.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -244,6 +245,18 @@ int ToolMain(int argc, char** argv, const std::string& usage,
   } catch (const std::exception& error) {
     EndFailed(name, error.what());
   }
+}
+
+void CheckIsOutside(const std::string& field, const std::string& path,
+                    const std::string& folder, const std::string& folder_name) {
+  namespace fs = std::filesystem;
+  if (path.empty()) return;
+  const fs::path outer = fs::weakly_canonical(fs::absolute(folder));
+  const fs::path inner = fs::weakly_canonical(fs::absolute(path));
+  const auto end =
+      std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
+  CheckOption(end.first != outer.end(), field, path,
+              "a folder outside of " + folder_name);
 }
 
 void CheckIsNoFileOfARun(const std::string& path) {

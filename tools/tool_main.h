@@ -32,6 +32,14 @@ int ToolMain(int argc, char** argv, const std::string& usage,
              const std::function<int()>& body, const std::string& source = "",
              std::vector<std::string>* arguments = nullptr);
 
+/// Refuses a path that is a folder or lies in it, through whatever links.
+/// `field`: names the path, which may be empty. `folder_name`: as in "--output,
+/// which is overwritten".
+///
+/// @throw OptionError if it does.
+void CheckIsOutside(const std::string& field, const std::string& path,
+                    const std::string& folder, const std::string& folder_name);
+
 /// Refuses --output=PATH where that is a file of a run, other than its
 /// evaluation and its page, which can be made again.
 ///

@@ -141,9 +141,9 @@ void RunDirectory::WriteHeads() {
 template <typename Archive>
 void RunDirectory::Serialize(Archive* archive) {
   archive->Section("run directory");
-  double cpu_seconds = CpuSeconds();
-  (*archive)(builder_, seconds_writing_, cpu_seconds);
-  if constexpr (Archive::kReads) cpu_seconds_before_ = cpu_seconds;
+  RunTime time = Time();
+  (*archive)(builder_, seconds_writing_, time.wall, time.cpu);
+  if constexpr (Archive::kReads) time_before_ = time;
   for (const auto& [path, stream] : Streams()) {
     std::uint64_t size = stream->tellp();
     (*archive)(size);
@@ -179,9 +179,10 @@ void RunDirectory::WriteTrajectory(const Trajectory& trajectory) const {
                       trajectory.end()});
 }
 
-double RunDirectory::CpuSeconds() const {
-  return cpu_seconds_before_ +
-         static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+RunTime RunDirectory::Time() const {
+  return {
+      time_before_.wall + facts_.since_start.Seconds(),
+      time_before_.cpu + static_cast<double>(std::clock()) / CLOCKS_PER_SEC};
 }
 
 RunSummary RunDirectory::Summary() const {
@@ -191,7 +192,10 @@ RunSummary RunDirectory::Summary() const {
   summary.seconds_writing = seconds_writing_;
   summary.seconds_refining = seconds_refining_;
   summary.seconds_coloring = seconds_coloring_;
-  summary.cpu_seconds_per_frame = CpuSeconds() / std::max(1, summary.frames);
+  const RunTime time = Time();
+  const int frames = std::max(1, summary.frames);
+  summary.all_seconds_per_frame = time.wall / frames;
+  summary.cpu_seconds_per_frame = time.cpu / frames;
   summary.peak_memory_bytes = PeakMemoryBytes();
   return summary;
 }

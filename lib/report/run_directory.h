@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "splitfusion/lib/base/stopwatch.h"
 #include "splitfusion/lib/report/frame_report.h"
 #include "splitfusion/lib/report/run_marker.h"
 #include "splitfusion/lib/report/run_paths.h"
@@ -22,6 +23,13 @@ struct RunFacts {
   std::string preset;   ///< Name of the preset.
   std::string options;  ///< Flagfile text that repeats the run.
   std::map<std::string, std::string> versions;  ///< LibraryVersions().
+  Stopwatch since_start = {};  ///< Of all that it took, in this process.
+};
+
+/// What a run took, seconds.
+struct RunTime {
+  double wall = 0;  ///< By the clock.
+  double cpu = 0;   ///< Of all threads.
 };
 
 /// How a run ended.
@@ -87,6 +95,11 @@ class RunDirectory {
     builder_.SetWritten(id, written);
   }
 
+  /// What the run took in processes before this one, from which it was resumed.
+  const RunTime& time_before() const { return time_before_; }
+  /// Takes it over from a directory that was of the same run.
+  void set_time_before(const RunTime& time) { time_before_ = time; }
+
   /// Summary of the frames so far.
   RunSummary Summary() const;
 
@@ -103,8 +116,8 @@ class RunDirectory {
   /// The streams with their paths.
   std::vector<std::pair<std::string, std::ofstream*>> Streams();
   void WriteHeads();
-  /// Of all threads, with what the run had used before it was resumed.
-  double CpuSeconds() const;
+  /// With what the run had taken before it was resumed.
+  RunTime Time() const;
 
   RunPaths paths_;
   RunFacts facts_;
@@ -112,7 +125,7 @@ class RunDirectory {
   double seconds_writing_ = 0;
   double seconds_refining_ = 0;
   double seconds_coloring_ = 0;
-  double cpu_seconds_before_ = 0;
+  RunTime time_before_;
   std::ofstream frames_;
   std::ofstream iterations_;
   std::ofstream trajectory_;

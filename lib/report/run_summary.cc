@@ -76,14 +76,6 @@ Json SecondsPerFrame(const RunSummary& summary) {
           {"parts", parts}};
 }
 
-/// Wall time of everything by frame.
-double SecondsOfAllPasses(const RunSummary& summary) {
-  return summary.mean_seconds +
-         (summary.seconds_refining + summary.seconds_coloring +
-          summary.seconds_writing) /
-             std::max(1, summary.frames);
-}
-
 Json ToJson(const LoopReport& loops) {
   return {{"key_frames", loops.key_frames},
           {"compared", loops.compared},
@@ -143,7 +135,7 @@ Json ToJson(const RunSummary& summary) {
           {"seconds_writing", summary.seconds_writing},
           {"seconds_refining", summary.seconds_refining},
           {"seconds_coloring", summary.seconds_coloring},
-          {"seconds_per_frame_all_passes", SecondsOfAllPasses(summary)},
+          {"seconds_per_frame_all_passes", summary.all_seconds_per_frame},
           {"cpu_seconds_per_frame", summary.cpu_seconds_per_frame},
           {"peak_memory_bytes", summary.peak_memory_bytes},
           {"surfaces", surfaces},

@@ -77,9 +77,11 @@ struct RunSummary {
   double mean_seconds = 0;    ///< Per frame, without writing.
   /// Mean seconds per frame of each part, in the order of kFrameParts.
   std::array<double, kFrameParts.size()> part_seconds{};
-  double seconds_writing = 0;            ///< Of the whole run.
-  double seconds_refining = 0;           ///< At the end of the run.
-  double seconds_coloring = 0;           ///< At the end of the run.
+  double seconds_writing = 0;   ///< Of the whole run.
+  double seconds_refining = 0;  ///< At the end of the run.
+  double seconds_coloring = 0;  ///< At the end of the run.
+  /// By the clock, of everything, from the start of the run to its summary.
+  double all_seconds_per_frame = 0;
   double cpu_seconds_per_frame = 0;      ///< Of all threads, mean.
   std::int64_t peak_memory_bytes = 0;    ///< Largest resident size.
   std::vector<SurfaceSummary> surfaces;  ///< By id.

@@ -59,7 +59,8 @@ TEST_F(SequenceRunTest, TellsHowFarItIsAndLeavesAWholeRun) {
     EXPECT_EQ(progress.total, progress.pass == RunPass::kRefining
                                   ? progress.surfaces
                                   : kFrames);
-    EXPECT_GE(progress.seconds_left, 0);
+    EXPECT_EQ(progress.seconds_left > 0,
+              progress.pass == RunPass::kTracking && progress.done < kFrames);
     done[progress.pass].push_back(progress.done);
   };
   EXPECT_EQ(Execute(hooks).frames, kFrames);
@@ -137,6 +138,34 @@ TEST_F(SequenceRunTest, AnInterruptionIsAskedForBeforeEveryFrame) {
   EXPECT_TRUE(folder_.Has("run/refinement.jsonl"));
   ASSERT_EQ(told.size(), 1u);
   EXPECT_NE(told[0].find("goes on after 2 of 4 frames"), std::string::npos);
+}
+
+TEST_F(SequenceRunTest, APassOverAllFramesCanBeInterruptedAndMadeLater) {
+  ASSERT_EQ(Execute({}).frames, kFrames);
+  const auto results = [this] {
+    std::vector<std::string> texts;
+    for (const char* file : {"trajectory.txt", "refinement.jsonl",
+                             "surfaces/000_background/mesh.ply",
+                             "surfaces/000_background/motions.bin"}) {
+      texts.push_back(folder_.Read(std::string("run/") + file));
+    }
+    return texts;
+  };
+  const std::vector<std::string> whole = results();
+  for (const RunPass pass : {RunPass::kRefining, RunPass::kColoring}) {
+    std::filesystem::remove_all(root());
+    SequenceRunHooks hooks;
+    bool stops = false;
+    hooks.interrupted = [&] { return stops; };
+    hooks.shown = [&](const RunProgress& progress) {
+      stops = progress.pass == pass && progress.done == 1;
+    };
+    EXPECT_THROW(Execute(hooks), std::runtime_error);
+    EXPECT_EQ(ReadRunMarker(root())->status, RunStatus::kIncomplete);
+    EXPECT_EQ(Execute({}).frames, kFrames);
+    EXPECT_EQ(ReadRunMarker(root())->resumed_at, std::vector<int>{kFrames});
+    EXPECT_EQ(results(), whole);
+  }
 }
 
 }  // namespace

@@ -111,6 +111,26 @@ TEST(RunDirectory, TheSummarySaysWhetherTheRunIsComplete) {
   EXPECT_FALSE(IsComplete(paths));
 }
 
+TEST(RunDirectory, CountsAllTimeByTheClockAlsoBeforeItWasResumed) {
+  const TemporaryFolder folder;
+  const RunFacts facts = Facts();
+  std::stringstream state;
+  RunDirectory run(folder / "run", facts);
+  run.AddFrame(SampleReport(0), {});
+  const double before = run.Summary().all_seconds_per_frame;
+  EXPECT_GT(before, 0);
+  EXPECT_LE(before, facts.since_start.Seconds());
+  ArchiveWriter writer(&state);
+  writer(run);
+  writer.Flush();
+  RunDirectory resumed(folder / "run", Facts(), /*goes_on=*/true);
+  ArchiveReader reader(&state, state.str().size(), "state");
+  reader(resumed);
+  EXPECT_GT(resumed.time_before().wall, before);
+  EXPECT_GT(resumed.Summary().all_seconds_per_frame,
+            resumed.time_before().wall);
+}
+
 TEST(RunDirectory, GoesOnFromItsState) {
   const TemporaryFolder folder;
   std::stringstream state;

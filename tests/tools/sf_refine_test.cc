@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -84,11 +85,11 @@ TEST_F(SfRefine, FindsHiddenMotionsOfAFinishedRun) {
   EXPECT_THAT(result.output, HasSubstr(std::to_string(counted) + " motions"));
   const auto summary =
       nlohmann::json::parse(folder_.Read("refined/summary.json"));
+  const auto before = nlohmann::json::parse(folder_.Read("run/summary.json"));
   EXPECT_NEAR(summary["seconds_per_frame_all_passes"].get<double>(),
-              summary["seconds_per_frame"]["mean"].get<double>() +
-                  (summary["seconds_refining"].get<double>() +
-                   summary["seconds_coloring"].get<double>() +
-                   summary["seconds_writing"].get<double>()) /
+              before["seconds_per_frame_all_passes"].get<double>() +
+                  (summary["seconds_refining"].get<double>() -
+                   before["seconds_refining"].get<double>()) /
                       12,
               1e-9);
   EXPECT_EQ(folder_.Read("refined/trajectory.txt"),
@@ -178,9 +179,12 @@ TEST_F(SfRefine, SaysWhatIsWrong) {
                 "holds no complete run");
   ExpectRefused("sf_refine",
                 (folder_ / "none") + output + " --refine_smoothness=0",
-                "--refine_smoothness = 0: expected > 0");
+                "--refine_smoothness = 0: expected 0..1e+06, not 0");
   ExpectRefused("sf_refine", (folder_ / "none") + output + " --refine_window=2",
                 "--refine_window = 2: expected frames >= 4");
+  ExpectRefused("sf_refine",
+                (folder_ / "none") + output + " --refine_samples=10001",
+                "--refine_samples = 10001: expected 0..10000");
   MakeRun();
   const std::string motions = "run/surfaces/001_person/motions.bin";
   const std::string bytes = folder_.Read(motions);
@@ -189,6 +193,23 @@ TEST_F(SfRefine, SaysWhatIsWrong) {
   EXPECT_FALSE(folder_.Has("out/run.json"));
   folder_.Write(motions, bytes);
   EXPECT_EQ(Refine("out").exit_code, 0);
+}
+
+TEST_F(SfRefine, LeavesTheRunThatItReadsAlone) {
+  MakeRun();
+  const std::string marker = folder_.Read("run/run.json");
+  std::filesystem::create_directory_symlink(folder_ / "run", folder_ / "link");
+  for (const char* output : {"run", "link", "run/surfaces/.."}) {
+    ExpectRefused(
+        "sf_refine",
+        (folder_ / "run") + " --overwrite --output=" + (folder_ / output),
+        "expected a folder outside of --output");
+  }
+  ExpectRefused("sf_refine",
+                (folder_ / "run") + " --output=" + (folder_ / "run/new"),
+                "expected a folder outside of RUN");
+  EXPECT_EQ(folder_.Read("run/run.json"), marker);
+  EXPECT_FALSE(folder_.Has("run/new"));
 }
 
 }  // namespace
