@@ -12,7 +12,7 @@ import re
 
 FOLDERS = ("lib", "pipelines", "cost_functions")
 OTHER = re.compile("lib/(base|calibration|sequence|segmentation|report|evaluation|"
-                   "experiment|synthetic)/")
+                   "experiment|synthetic|page|export)/")
 MARKED = re.compile(r"//[/<]*\s*(Layout|Speed|Format|Unit|Maths|Flag)\b[.:]")
 NUMBER = r"-?(?:\d[\d']*\.?\d*(?:e[-+]?\d+)?|\.\d+)[fu]?\b"
 TYPE = r"(?:bool|int|float|double|std::size_t|std::u?int\d+_t)"

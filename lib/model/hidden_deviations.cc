@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -29,21 +30,25 @@ std::vector<double> SquaredWays(const PartMotions& from,
 /// from the one without.
 std::vector<double> MeanSquaredWays(const HiddenMotionOptions& options,
                                     const PartMotions& start) {
+  constexpr int kBlock = 32;  // Speed. Samples that are kept at a time.
   const ResidualNoise noise = NoiseOfSeen(options.smoothness, start);
   PartMotions without = start;
   RefinePart(options, {}, &without);
-  std::vector<std::vector<double>> ways(options.samples);
-  tbb::parallel_for(0, options.samples, [&](int sample) {
-    PartMotions with = start;
-    ResidualNoise own = noise;
-    own.seed = static_cast<std::uint64_t>(sample);
-    RefinePart(options, own, &with);
-    ways[sample] = SquaredWays(without, with);
-  });
-  std::vector<double> mean(ways.front().size());
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    for (const std::vector<double>& sample : ways) mean[i] += sample[i];
-    mean[i] /= options.samples;
+  std::vector<double> mean(static_cast<std::size_t>(start.frames()) *
+                           start.nodes());
+  std::array<std::vector<double>, kBlock> ways;
+  for (int begin = 0; begin < options.samples; begin += kBlock) {
+    const int count = std::min(kBlock, options.samples - begin);
+    tbb::parallel_for(0, count, [&](int k) {
+      PartMotions with = start;
+      ResidualNoise own = noise;
+      own.seed = static_cast<std::uint64_t>(begin + k);
+      RefinePart(options, own, &with);
+      ways[k] = SquaredWays(without, with);
+    });
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      for (int k = 0; k < count; ++k) mean[i] += ways[k][i] / options.samples;
+    }
   }
   return mean;
 }
@@ -51,7 +56,7 @@ std::vector<double> MeanSquaredWays(const HiddenMotionOptions& options,
 void AddDeviations(const PartMotions& motions,
                    const std::vector<double>& squares,
                    std::vector<HiddenDeviation>* deviations) {
-  constexpr double kAxes = 3;
+  constexpr double kAxes = 3;  // Maths.
   for (int f = 0; f < motions.frames(); ++f) {
     for (int i = 0; i < motions.nodes(); ++i) {
       if (!motions.states[f][i].hidden) continue;

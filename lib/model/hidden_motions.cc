@@ -16,12 +16,12 @@ void HiddenMotionOptions::List(OptionList* list) {
                "Once all frames are known, find the motions of what was hidden "
                "between its last and its next sight.");
   list->Number(
-      "refine_smoothness", &smoothness, Range::Above(0), "",
+      "refine_smoothness", &smoothness, {0, 1e6, true}, "",
       "Weight of smoothness in time of what was hidden, of that of its "
       "shape.");
   list->Number("refine_window", &window, Range::AtLeast(4), "frames",
                "Frames of which the motions are found together.");
-  list->Number("refine_samples", &samples, Range::AtLeast(0), "",
+  list->Number("refine_samples", &samples, {0, 10000}, "",
                "Solutions under noise of the residuals' size, from which "
                "deviations of what was hidden are estimated; 0 = none.");
 }

@@ -20,6 +20,25 @@ std::array<double, 3> SecondDifference(int before, int at, int after) {
   return {2 / (a * (a + b)), -2 / (a * b), 2 / (b * (a + b))};
 }
 
+/// Those of a place in frame f and in the frames beside it.
+std::array<double, 3> DifferenceWeights(const PartMotions& motions, int f) {
+  return SecondDifference(motions.indices[f - 1], motions.indices[f],
+                          motions.indices[f + 1]);
+}
+
+/// The second difference in time of a node's place.
+Eigen::Vector3d DifferenceInTime(const PartMotions& motions, int f, int i,
+                                 const std::array<double, 3>& weights) {
+  return weights[0] * motions.states[f - 1][i].place +
+         weights[1] * motions.states[f][i].place +
+         weights[2] * motions.states[f + 1][i].place;
+}
+
+/// An edge as its first end turns it, Eq. 6.
+Eigen::Vector3d TurnedEdge(const PartMotions& motions, int f, int i, int j) {
+  return motions.states[f][i].rotation * (motions.rest[i] - motions.rest[j]);
+}
+
 /// Frames [begin, end) of a part, whose hidden nodes are sought; what is hidden
 /// before them was found.
 class Window {
@@ -137,8 +156,7 @@ class Window {
     ForEachDifference([&](int f, int i, const std::array<double, 3>& weights) {
       cost.smoothness +=
           smoothness_ *
-          (weights[0] * Place(f - 1, i) + weights[1] * Place(f, i) +
-           weights[2] * Place(f + 1, i) - DifferenceTarget(f, i))
+          (DifferenceInTime(motions_, f, i, weights) - DifferenceTarget(f, i))
               .squaredNorm();
     });
     return cost;
@@ -170,9 +188,7 @@ class Window {
 
   /// What the difference of two places is to be.
   Eigen::Vector3d EdgeTarget(int frame, int i, int j) const {
-    return motions_.states[frame][i].rotation *
-               (motions_.rest[i] - motions_.rest[j]) +
-           EdgeNoise(frame, i, j);
+    return TurnedEdge(motions_, frame, i, j) + EdgeNoise(frame, i, j);
   }
 
   /// What the second difference of a place in time is to be: none, but for the
@@ -209,9 +225,7 @@ class Window {
   void ForEachDifference(const Visit& visit) const {
     for (int f = std::max(1, begin_ - 1);
          f <= end_ && f + 1 < motions_.frames(); ++f) {
-      const std::array<double, 3> weights =
-          SecondDifference(motions_.indices[f - 1], motions_.indices[f],
-                           motions_.indices[f + 1]);
+      const std::array<double, 3> weights = DifferenceWeights(motions_, f);
       for (int i = 0; i < motions_.nodes(); ++i) {
         const std::array<int, 3> numbers = NumbersAt(f, i);
         if (std::any_of(numbers.begin(), numbers.end(),
@@ -304,21 +318,16 @@ ResidualNoise NoiseOfSeen(double smoothness, const PartMotions& motions) {
       if (now.hidden) continue;
       for (const int j : motions.neighbors[i]) {
         if (states[f][j].hidden) continue;
-        edges += (now.place - states[f][j].place -
-                  now.rotation * (motions.rest[i] - motions.rest[j]))
+        edges += (now.place - states[f][j].place - TurnedEdge(motions, f, i, j))
                      .squaredNorm();
         edge_count += 3;
       }
       if (f == 0 || f + 1 == motions.frames()) continue;
-      const PartMotions::State& before = states[f - 1][i];
-      const PartMotions::State& after = states[f + 1][i];
-      if (before.hidden || after.hidden) continue;
-      const std::array<double, 3> weights = SecondDifference(
-          motions.indices[f - 1], motions.indices[f], motions.indices[f + 1]);
+      if (states[f - 1][i].hidden || states[f + 1][i].hidden) continue;
       differences +=
-          smoothness * (weights[0] * before.place + weights[1] * now.place +
-                        weights[2] * after.place)
-                           .squaredNorm();
+          smoothness *
+          DifferenceInTime(motions, f, i, DifferenceWeights(motions, f))
+              .squaredNorm();
       difference_count += 3;
     }
   }
