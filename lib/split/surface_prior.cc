@@ -60,14 +60,22 @@ class Evidence {
         const bool far_out = reach(v, u) < -cut_.outer_dilation;
         evidence(v, u) =
             far_out ? kSurelyBackground
-                    : static_cast<float>(OfMask(distance(v, u)) +
-                                         OfOthers(v, u) + OfPrediction(v, u));
+                    : static_cast<float>(OfMasks(v, u, distance(v, u)) +
+                                         OfPrediction(v, u));
       }
     }
     return evidence;
   }
 
  private:
+  /// What is in the mask of another one says no more than that it is not in
+  /// its own: both are the detector's word on one pixel.
+  double OfMasks(int v, int u, float distance) const {
+    const double own = OfMask(distance);
+    const bool other = !others_.empty() && others_(v, u) != 0;
+    return other ? std::max(own, 0.0) - options_.mask_weight : own;
+  }
+
   double OfMask(float distance) const {
     const double inside =
         detected_ ? options_.mask_weight : options_.missed_weight;
@@ -75,10 +83,6 @@ class Evidence {
       return inside * std::min(1.0, distance / double(cut_.core_erosion));
     }
     return inside * std::max(-1.0, distance / double(cut_.outer_dilation));
-  }
-
-  double OfOthers(int v, int u) const {
-    return !others_.empty() && others_(v, u) ? -options_.mask_weight : 0.0;
   }
 
   double OfPrediction(int v, int u) const {

@@ -19,7 +19,7 @@ constexpr DepthTolerance<float> kSmoothDepth = {0.02f};
 /// the strongest edge of the graph cut, per pixel.
 struct PriorOptions {
   double mask_weight = 0.25;        ///< Core of the detection's mask.
-  double prediction_weight = 0.5;   ///< Agreement with the predicted surface.
+  double prediction_weight = 0.25;  ///< Agreement with the predicted surface.
   double background_weight = 0.15;  ///< Agreement with the background.
   double unexplained_weight = 0.2;  ///< In front of the background.
   double missed_weight = 0.1;     ///< Outside of the prediction, not detected.
@@ -61,9 +61,11 @@ struct SurfaceEvidence {
 };
 
 /// Gathers the evidence for one surface: the depth inside or outside of the
-/// detector's mask, and where the live depth agrees with the predicted surface,
-/// with another one or with the background. Beyond the dilated mask and
-/// prediction the background is certain.
+/// detector's mask or inside of those of others, and where the live depth
+/// agrees with the predicted surface, with another one or with the background.
+/// The prediction has no more weight than the mask: it was built from masks,
+/// and what it once took up by mistake would confirm itself. Beyond the dilated
+/// mask and prediction the background is certain.
 SurfaceEvidence GatherEvidence(const SurfaceObservation& observation,
                                const ComparedDepth& compared,
                                const GraphCutOptions& cut,
