@@ -50,8 +50,8 @@ std::map<std::string, RunFile> FilesOfRun(const std::string& folder) {
 bool IsOfTheEnd(const std::string& path) {
   const std::string first = fs::path(path).begin()->string();
   return first == "surfaces" || first == "refinement.jsonl" ||
-         first == "summary.json" || first == "report.html" ||
-         first == "evaluation.json";
+         first == "hidden_deviations.csv" || first == "summary.json" ||
+         first == "report.html" || first == "evaluation.json";
 }
 
 void Rename(const fs::path& from, const fs::path& to) {
