@@ -3,9 +3,7 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
