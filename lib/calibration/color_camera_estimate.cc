@@ -243,6 +243,7 @@ double Refine(const std::vector<EdgeFrame>& frames, const PinholeCamera& camera,
   return summary.final_cost;
 }
 
+/// The same with ever less blur; the cost is that of the last.
 double Refine(const std::vector<EdgeFrame>& frames, const PinholeCamera& camera,
               std::size_t step, Parameters* p) {
   double cost = 0;
@@ -252,8 +253,10 @@ double Refine(const std::vector<EdgeFrame>& frames, const PinholeCamera& camera,
   return cost;
 }
 
-/// The parameters of least cost: edges fit halfway at many wrong places, so
-/// that one start and ever less blur end there; all starts are refined.
+/// The parameters of least cost. Edges fit halfway at many wrong places, where
+/// the search from a single start ends; so it begins at the best shift for each
+/// focal length and each place beside the depth camera, and the one that ends
+/// with the least cost is refined with all points.
 Parameters Minimise(const std::vector<EdgeFrame>& frames,
                     const PinholeCamera& camera) {
   constexpr std::size_t kStarts = kSides.size() * kFocalRatios.size();

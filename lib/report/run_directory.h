@@ -97,7 +97,8 @@ class RunDirectory {
 
   /// What the run took in processes before this one, from which it was resumed.
   const RunTime& time_before() const { return time_before_; }
-  /// Takes it over from a directory that was of the same run.
+  /// Takes it over from an earlier directory of the same run, whose frames are
+  /// processed anew.
   void set_time_before(const RunTime& time) { time_before_ = time; }
 
   /// Summary of the frames so far.
