@@ -4,12 +4,14 @@
 #include <array>
 #include <cassert>
 #include <cstring>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/base/chosen.h"
 #include "splitfusion/lib/deformation/node_births.h"
+#include "splitfusion/lib/deformation/skinning.h"
 
 namespace splitfusion {
 namespace {
@@ -52,23 +54,53 @@ NodeMotion MotionFrom(const char* bytes) {
   return motion;
 }
 
+std::shared_ptr<const std::vector<int>> NumbersFrom(int begin, int end) {
+  std::vector<int> numbers(end - begin);
+  std::iota(numbers.begin(), numbers.end(), begin);
+  return std::make_shared<const std::vector<int>>(std::move(numbers));
+}
+
 }  // namespace
 
-MotionLog::Block MotionLog::Block::Part(const std::vector<char>& chosen) const {
+MotionLog::Block MotionLog::Block::Part(const std::vector<int>& chosen,
+                                        int first_frame) const {
   Block part;
-  part.frames = frames;
+  std::copy_if(frames.begin(), frames.end(), std::back_inserter(part.frames),
+               [&](const SpooledFrame& f) { return f.index >= first_frame; });
+  const auto there = std::lower_bound(chosen.begin(), chosen.end(), nodes_ever);
+  part.nodes_ever = static_cast<int>(there - chosen.begin());
   part.nodes = nodes;
-  part.nodes_ever = nodes_ever;
   part.changes = changes;
-  std::vector<int> known;
-  for (std::size_t k = 0; k < numbers->size(); ++k) {
-    const int number = (*numbers)[k];
-    if (chosen[number] == 0) continue;
-    known.push_back(number);
-    part.places.push_back(places.empty() ? static_cast<int>(k) : places[k]);
+  for (auto number = chosen.begin(); number != there; ++number) {
+    const auto at = std::lower_bound(numbers->begin(), numbers->end(), *number);
+    part.places.push_back(static_cast<int>(at - numbers->begin()));
   }
-  part.numbers = std::make_shared<const std::vector<int>>(std::move(known));
+  part.numbers = NumbersFrom(0, part.nodes_ever);
   return part;
+}
+
+/// Nodes of a graph that were born later than its first ones.
+std::vector<MotionLog::Births> MotionLog::BirthsIn(
+    const DeformationGraph& graph) {
+  std::vector<Births> all;
+  DeformationGraph older;
+  for (int begin = 0, end = 0; begin < graph.size(); begin = end) {
+    const int frame = graph.first_seen[begin];
+    std::vector<Eigen::Vector3f> places;
+    for (; end < graph.size() && graph.first_seen[end] == frame; ++end) {
+      places.push_back(graph.positions[end].cast<float>());
+    }
+    if (begin > 0) {
+      all.push_back({NumbersFrom(begin, end),
+                     std::make_shared<const NodeBirths>(
+                         older, SkinningIndex(older, 1), std::move(places)),
+                     frame});
+    }
+    older.positions.assign(graph.positions.begin(),
+                           graph.positions.begin() + end);
+    older.neighbors.resize(end);
+  }
+  return all;
 }
 
 int MotionLog::BlockOf(int i) const {
@@ -113,7 +145,6 @@ FrameMotions MotionLog::Load(int i) const {
   const std::size_t seen_from = block.nodes * sizeof(SpooledMotion);
   std::vector<char> bytes(seen_from + (head.has_seen ? block.nodes : 0));
   file_->Read(head.offset, bytes.data(), bytes.size());
-  // Of nodes that matter: most that there ever were are none of a part's.
   const std::vector<char> needed = Needed();
   std::vector<int> place(nodes_ever_, -1);
   std::vector<NodeMotion> motions;
@@ -130,7 +161,8 @@ FrameMotions MotionLog::Load(int i) const {
         head.has_seen ? bytes[seen_from + at] : char{false});
   }
   for (const Births& births : births_) {
-    if (births.numbers->front() < block.nodes_ever) continue;
+    const bool known = births.numbers->front() < block.nodes_ever;
+    if (known && head.index >= births.frame) continue;
     std::vector<NodeMotion> of_carriers;
     for (const int carrier : births.nodes->carriers()) {
       of_carriers.push_back(motions[place[carrier]]);
@@ -177,9 +209,7 @@ MotionHistory MotionLog::All() const {
 void MotionLog::Append(FrameMotions frame) {
   const auto nodes = static_cast<int>(frame.motions.size());
   if (numbers_ == nullptr) {
-    std::vector<int> numbers(nodes);
-    std::iota(numbers.begin(), numbers.end(), 0);
-    numbers_ = std::make_shared<const std::vector<int>>(std::move(numbers));
+    numbers_ = NumbersFrom(0, nodes);
     nodes_ever_ = nodes;
   }
   assert(frame.motions.size() == numbers_->size());
@@ -198,14 +228,12 @@ void MotionLog::Grow(const NodeBirths& births, const NodeChange& change) {
     change.Apply(&frame.seen);
     recent_bytes_ += BytesInMemory(frame);
   }
-  std::vector<int> born(births.size());
-  std::iota(born.begin(), born.end(), nodes_ever_);
+  const auto born = NumbersFrom(nodes_ever_, nodes_ever_ + births.size());
   std::vector<int> numbers = *numbers_;
-  numbers.insert(numbers.end(), born.begin(), born.end());
-  if (!born.empty()) {
-    births_.push_back(
-        {std::make_shared<const std::vector<int>>(std::move(born)),
-         std::make_shared<const NodeBirths>(births.Renumbered(*numbers_))});
+  numbers.insert(numbers.end(), born->begin(), born->end());
+  if (!born->empty()) {
+    births_.push_back({born, std::make_shared<const NodeBirths>(
+                                 births.Renumbered(*numbers_))});
   }
   change.Apply(&numbers);
   numbers_ = std::make_shared<const std::vector<int>>(std::move(numbers));
@@ -271,18 +299,16 @@ void MotionLog::Replace(int i, const std::vector<NodeMotion>& motions) {
 }
 
 MotionLog MotionLog::Part(const std::vector<char>& nodes,
-                          int first_frame) const {
+                          const DeformationGraph& graph) const {
   MotionLog part(file_, memory_);
+  if (numbers_ == nullptr || graph.size() == 0) return part;
+  const int first_frame = graph.first_seen.front();
+  const std::vector<int> numbers = Chosen(*numbers_, nodes);
   for (const std::shared_ptr<const Block>& block : blocks_) {
-    const auto begin = std::find_if(
-        block->frames.begin(), block->frames.end(),
-        [&](const SpooledFrame& f) { return f.index >= first_frame; });
-    if (begin == block->frames.end()) continue;
-    Block rest = *block;
-    rest.frames.erase(rest.frames.begin(),
-                      rest.frames.begin() + (begin - block->frames.begin()));
-    part.spooled_ += static_cast<int>(rest.frames.size());
-    part.blocks_.push_back(std::make_shared<const Block>(std::move(rest)));
+    if (block->frames.back().index < first_frame) continue;
+    part.blocks_.push_back(
+        std::make_shared<const Block>(block->Part(numbers, first_frame)));
+    part.spooled_ += static_cast<int>(part.blocks_.back()->frames.size());
     part.block_ends_.push_back(part.spooled_);
   }
   for (const FrameMotions& frame : recent_) {
@@ -292,18 +318,11 @@ MotionLog MotionLog::Part(const std::vector<char>& nodes,
                             Chosen(frame.seen, nodes)});
     part.recent_bytes_ += BytesInMemory(part.recent_.back());
   }
-  if (numbers_ == nullptr) return part;
-  part.numbers_ =
-      std::make_shared<const std::vector<int>>(Chosen(*numbers_, nodes));
-  part.nodes_ever_ = nodes_ever_;
-  part.births_ = births_;
+  part.nodes_ever_ = graph.size();
+  part.numbers_ = NumbersFrom(0, part.nodes_ever_);
   part.changes_ = changes_;
-  part.ForgetNeedlessBirths();
-  const std::vector<char> needed = part.Needed();
-  for (std::shared_ptr<const Block>& block : part.blocks_) {
-    block = std::make_shared<const Block>(block->Part(needed));
-  }
   part.Finish();
+  part.births_ = BirthsIn(graph);  // Needed for frames that know them, too.
   return part;
 }
 
@@ -347,6 +366,7 @@ void MotionLog::SerializeIndex(Archive* archive) {
   for (Births& births : births_) {
     SerializeShared(archive, &births.numbers);
     SerializeShared(archive, &births.nodes);
+    (*archive)(births.frame);
   }
 }
 

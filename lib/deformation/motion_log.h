@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/spool_file.h"
+#include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/deformation/node_change.h"
 
@@ -68,10 +69,15 @@ class MotionLog {
   /// @throw InputError as Append().
   void Replace(int i, const std::vector<NodeMotion>& motions);
 
-  /// That of some of the nodes (of every one whether it is), from a frame on.
+  /// That of some of the nodes (of every one whether it is), from the frame on
+  /// in which the first of them was seen. It knows of its own nodes alone:
+  /// before another was, it moves with the nearest one that was before it.
+  ///
+  /// `graph`: of these nodes, with `first_seen`, which ascends.
   ///
   /// @throw InputError as Append().
-  MotionLog Part(const std::vector<char>& nodes, int first_frame) const;
+  MotionLog Part(const std::vector<char>& nodes,
+                 const DeformationGraph& graph) const;
 
   /// Says that it is complete: all of it goes to the file.
   ///
@@ -124,16 +130,19 @@ class MotionLog {
     int nodes_ever = 0;  ///< Until then.
     int changes = 0;     ///< As `nodes_ever`.
 
-    /// The same frames with those nodes alone whose entry of `chosen` (by
-    /// number, of all nodes that there ever were) is not 0.
-    Block Part(const std::vector<char>& chosen) const;
+    /// Those from a frame on, with some of the nodes alone: those with these
+    /// numbers, ascending, are numbered anew from 0.
+    Block Part(const std::vector<int>& chosen, int first_frame) const;
   };
   /// Nodes that were born together, some of them.
   struct Births {
     std::shared_ptr<const std::vector<int>> numbers;  ///< Ascending.
     std::shared_ptr<const NodeBirths> nodes;          ///< By `numbers`.
+    /// Of a part: in frames before, they move so whatever the file has.
+    int frame = 0;
   };
 
+  static std::vector<Births> BirthsIn(const DeformationGraph& graph);
   int BlockOf(int i) const;
   const SpooledFrame& HeadOf(int i) const;
   std::vector<char> Needed() const;

@@ -260,7 +260,7 @@ void Surface::Retire(const std::vector<char>& nodes) {
   shown.triangles = TrianglesOfLargePieces(mesh_, options_.min_piece_area);
   const int now = history_.frame(history_.size() - 1);
   for (SurfacePart& part : PartsOf(shown, mesh_skinning_, graph_, nodes, now)) {
-    MotionLog motions = history_.Part(part.nodes, part.first_frame);
+    MotionLog motions = history_.Part(part.nodes, part.graph);
     if (motions.empty()) continue;
     retired_.Add(std::move(part.mesh), std::move(part.graph),
                  std::move(motions));

@@ -1,15 +1,12 @@
 #include "splitfusion/lib/model/surface_parts.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "splitfusion/lib/base/chosen.h"
 #include "splitfusion/lib/geometry/nearest_point.h"
 #include "splitfusion/lib/geometry/triangle_corners.h"
-#include "splitfusion/lib/visibility/seen_triangles.h"
 
 namespace splitfusion {
 namespace {
@@ -91,74 +88,61 @@ TriangleMesh MeshOf(const TriangleMesh& mesh,
   return part;
 }
 
-/// The nodes of `of_nodes` that are the nearest one of a vertex.
+/// The nodes of `of_nodes` that are the nearest one of a vertex, without those
+/// that were seen after `now` or never.
 std::vector<int> Carriers(const std::vector<SkinningSupport>& supports,
-                          const std::vector<char>& of_nodes) {
+                          const DeformationGraph& graph,
+                          const std::vector<char>& of_nodes, int now) {
   std::vector<char> carries(of_nodes.size(), false);
   for (const SkinningSupport& one : supports) {
     carries[one.nearest] = of_nodes[one.nearest];
   }
   std::vector<int> carriers;
-  for (std::size_t i = 0; i < carries.size(); ++i) {
-    if (carries[i] != 0) carriers.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < graph.first_seen.size(); ++i) {
+    if (carries[i] != 0 && graph.first_seen[i] <= now) {
+      carriers.push_back(static_cast<int>(i));
+    }
   }
   return carriers;
 }
 
-/// What one node carries.
-struct Carried {
-  std::vector<Eigen::Vector3i> triangles;
-  int first_frame = std::numeric_limits<int>::max();  // Of a sight.
-};
-
-/// Triangles by the nearest one of some nodes; without those that were seen
-/// after `now` or never.
-std::map<int, Carried> ByCarrier(const std::vector<Eigen::Vector3i>& triangles,
-                                 const std::vector<int>& carriers,
-                                 const TriangleMesh& mesh,
-                                 const std::vector<Skinning>& skinning,
-                                 const DeformationGraph& graph, int now) {
+/// Triangles by the nearest one of some nodes.
+std::map<int, std::vector<Eigen::Vector3i>> ByCarrier(
+    const std::vector<Eigen::Vector3i>& triangles,
+    const std::vector<int>& carriers, const TriangleMesh& mesh,
+    const DeformationGraph& graph) {
   std::vector<Eigen::Vector3f> places;
   for (const int node : carriers) {
     places.push_back(graph.positions[node].cast<float>());
   }
   const NearestPoint tree(places);
-  std::map<int, Carried> carried;
+  std::map<int, std::vector<Eigen::Vector3i>> carried;
   for (const Eigen::Vector3i& t : triangles) {
-    int first = 0;
-    for (int k = 0; k < 3; ++k) {
-      first = std::max(first,
-                       FirstSight(mesh.vertices[t[k]], skinning[t[k]], graph));
-    }
-    if (first > now) continue;
     const Eigen::Vector3f middle = TriangleCorners(mesh.vertices, t).Middle();
-    Carried& one = carried[carriers[tree.Find(middle, -1, nullptr)]];
-    one.triangles.push_back(t);
-    one.first_frame = std::min(one.first_frame, first);
+    carried[carriers[tree.Find(middle, -1, nullptr)]].push_back(t);
   }
   return carried;
 }
 
-/// Nodes whose parts were seen first at about the same time.
+/// Nodes that were seen first at about the same time, and what they carry.
 struct Generation {
   std::vector<char> nodes;  // Of every one whether it is.
-  Carried carried;
+  std::vector<Eigen::Vector3i> triangles;
 };
 
-/// By powers of four of frames since they were seen first.
-std::map<int, Generation> Generations(const std::map<int, Carried>& by_carrier,
-                                      int nodes, int now) {
+/// By powers of four of frames since they were seen first. What lies beside a
+/// node may be much older: of that it knows nothing.
+std::map<int, Generation> Generations(
+    const std::map<int, std::vector<Eigen::Vector3i>>& by_carrier,
+    const DeformationGraph& graph, int now) {
   std::map<int, Generation> generations;
-  for (const auto& [node, carried] : by_carrier) {
-    Generation& one =
-        generations[std::ilogb(now - carried.first_frame + 1) / 2];
-    one.nodes.resize(nodes, false);
+  for (const auto& [node, triangles] : by_carrier) {
+    const int age = now - graph.first_seen[node];
+    Generation& one = generations[std::ilogb(age + 1) / 2];
+    one.nodes.resize(graph.size(), false);
     one.nodes[node] = true;
-    one.carried.first_frame =
-        std::min(one.carried.first_frame, carried.first_frame);
-    one.carried.triangles.insert(one.carried.triangles.end(),
-                                 carried.triangles.begin(),
-                                 carried.triangles.end());
+    one.triangles.insert(one.triangles.end(), triangles.begin(),
+                         triangles.end());
   }
   return generations;
 }
@@ -170,17 +154,16 @@ std::vector<SurfacePart> PartsOf(const TriangleMesh& mesh,
                                  const DeformationGraph& graph,
                                  const std::vector<char>& of_nodes, int now) {
   std::vector<SurfacePart> parts;
-  const std::vector<int> carriers = Carriers(skinning.supports(), of_nodes);
+  const std::vector<int> carriers =
+      Carriers(skinning.supports(), graph, of_nodes, now);
   if (carriers.empty()) return parts;
-  const std::map<int, Carried> by_carrier =
-      ByCarrier(TrianglesOf(mesh, skinning.supports(), of_nodes), carriers,
-                mesh, skinning.skinning(), graph, now);
-  for (auto& [age, generation] : Generations(by_carrier, graph.size(), now)) {
+  const std::map<int, std::vector<Eigen::Vector3i>> by_carrier = ByCarrier(
+      TrianglesOf(mesh, skinning.supports(), of_nodes), carriers, mesh, graph);
+  for (auto& [age, generation] : Generations(by_carrier, graph, now)) {
     SurfacePart part;
-    part.mesh = MeshOf(mesh, generation.carried.triangles);
+    part.mesh = MeshOf(mesh, generation.triangles);
     part.graph = GraphOf(graph, generation.nodes);
     part.nodes = std::move(generation.nodes);
-    part.first_frame = generation.carried.first_frame;
     parts.push_back(std::move(part));
   }
   return parts;

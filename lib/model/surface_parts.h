@@ -14,16 +14,16 @@ struct SurfacePart {
   TriangleMesh mesh;        ///< Canonical frame, metres.
   DeformationGraph graph;   ///< Of its nodes.
   std::vector<char> nodes;  ///< Of every one of the surface whether it is.
-  int first_frame = 0;      ///< In which any of it was first seen.
 };
 
 /// What some nodes of a surface carry: the triangles with a vertex whose
 /// nearest node is one of `of_nodes` (of every node whether it is), and those
-/// beside them. They are apart by how many frames before `now` they were seen
-/// first (FirstSight()), by powers of four, and carried by these nodes alone:
-/// what is kept of a part are the motions of its nodes since its first sight,
-/// and of every node there are as many as there are frames in which it was in
-/// use. What was never seen is in none.
+/// beside them. They are apart by how many frames before `now` their nodes were
+/// seen first (DeformationGraph::first_seen), by powers of four, and carried by
+/// these alone: what is kept of a part are the motions of its nodes since the
+/// first of them was seen, so that of every node there are as many as there are
+/// frames in which it was in use, up to that factor. Nodes that were never seen
+/// carry none.
 ///
 /// `skinning`: of the mesh's vertices by `graph`.
 std::vector<SurfacePart> PartsOf(const TriangleMesh& mesh,

@@ -2,51 +2,32 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 
 namespace splitfusion {
 namespace {
 
-/// Calls something for the node nearest to a point (the one with the greatest
-/// weight of Eq. 3), and for others no farther than the node spacing. Such a
-/// point had a node near enough, and the graph did not grow over it.
-template <typename Visit>
-void ForEachNear(const Eigen::Vector3f& point, const Skinning& skinning,
-                 const DeformationGraph& graph, const Visit& visit) {
+/// Whether a node near a point had been seen: the nearest one (with the
+/// greatest weight of Eq. 3), or another no farther than the node spacing. Such
+/// a point had a node near enough, and the graph did not grow over it. `known`:
+/// whether it is recorded when nodes were seen first; else all were.
+bool IsSeen(const Eigen::Vector3f& point, const Skinning& skinning,
+            const DeformationGraph& graph, bool known, int frame) {
   const auto begin = skinning.weights.begin();
   const auto nearest = std::max_element(begin, begin + skinning.count) - begin;
   for (int k = 0; k < skinning.count; ++k) {
     const int node = skinning.nodes[k];
     const double distance =
         (graph.positions[node] - point.cast<double>()).norm();
-    if (k == nearest || distance < graph.node_spacing) visit(node);
+    if (k != nearest && distance >= graph.node_spacing) continue;
+    if (graph.IsInUse(node, frame) &&
+        (!known || graph.first_seen[node] <= frame)) {
+      return true;
+    }
   }
-}
-
-/// Whether a node near a point had been seen. `known`: whether it is recorded
-/// when nodes were seen first; else all were.
-bool IsSeen(const Eigen::Vector3f& point, const Skinning& skinning,
-            const DeformationGraph& graph, bool known, int frame) {
-  bool seen = false;
-  ForEachNear(point, skinning, graph, [&](int node) {
-    seen = seen || (graph.IsInUse(node, frame) &&
-                    (!known || graph.first_seen[node] <= frame));
-  });
-  return seen;
+  return false;
 }
 
 }  // namespace
-
-int FirstSight(const Eigen::Vector3f& point, const Skinning& skinning,
-               const DeformationGraph& graph) {
-  int first = std::numeric_limits<int>::max();
-  ForEachNear(point, skinning, graph, [&](int node) {
-    if (node < static_cast<int>(graph.first_seen.size())) {
-      first = std::min(first, graph.first_seen[node]);
-    }
-  });
-  return first;
-}
 
 std::vector<Eigen::Vector3i> SeenTriangles(
     const TriangleMesh& mesh, const std::vector<Skinning>& skinning,

@@ -29,12 +29,6 @@ std::vector<Eigen::Vector3i> SeenTriangles(
     const TriangleMesh& mesh, const std::vector<Skinning>& skinning,
     const DeformationGraph& graph, int frame);
 
-/// The frame in which a point (canonical, metres) had been seen first, as it
-/// counts there, while all nodes of the graph are in use; the greatest int if
-/// that of no node near it is recorded.
-int FirstSight(const Eigen::Vector3f& point, const Skinning& skinning,
-               const DeformationGraph& graph);
-
 }  // namespace splitfusion
 
 #endif  // SPLITFUSION_LIB_VISIBILITY_SEEN_TRIANGLES_H_

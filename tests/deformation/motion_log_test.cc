@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "splitfusion/lib/base/archive.h"
+#include "splitfusion/lib/base/chosen.h"
 #include "splitfusion/lib/deformation/graph_growth.h"
 #include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/node_births.h"
@@ -39,6 +40,7 @@ struct SlidingPlate {
     // What was seen of a frame is not always known.
     if (frame % 7 == 0) seen.clear();
     log.Append({2 * frame, frame % 5 != 0, graph.motions, seen});
+    graph.first_seen.resize(graph.size(), 2 * frame);
     if (frame % 3 != 0) return;
     for (Eigen::Vector3f& v : mesh.vertices) v.x() += 0.02f;
     const SkinningIndex index(graph, 6);
@@ -98,36 +100,90 @@ TEST(MotionLog, FindsFrames) {
   EXPECT_FALSE(MotionLog().Find(0).has_value());
 }
 
-TEST(MotionLog, APartIsSomeNodesFromAFrameOn) {
-  SlidingPlate kept(kMuch), spooled(kLittle);
-  std::vector<char> nodes(kept.graph.size(), false);
-  std::vector<int> chosen;
-  for (int i = 3; i < kept.graph.size(); i += 4) {
-    nodes[i] = true;
-    chosen.push_back(i);
+/// Some nodes of a graph, and the graph of these alone.
+struct Some {
+  Some(const DeformationGraph& graph, int step, int first_frame) {
+    for (int i = 0; i < graph.size(); ++i) {
+      const bool is = i % step == 0 && graph.first_seen[i] >= first_frame;
+      nodes.push_back(is);
+      if (is) indices.push_back(i);
+    }
+    part.positions = Chosen(graph.positions, nodes);
+    part.first_seen = Chosen(graph.first_seen, nodes);
   }
-  const int first = 2 * 37;  // Amid a block.
-  const MotionLog part = spooled.log.Part(nodes, first);
+
+  /// The one that is nearest to node k of them, of those seen before it.
+  int Nearest(int k) const {
+    int nearest = 0;
+    const auto distance = [&](int i) {
+      return (part.positions[i] - part.positions[k]).norm();
+    };
+    for (int i = 0; part.first_seen[i] < part.first_seen[k]; ++i) {
+      if (distance(i) < distance(nearest)) nearest = i;
+    }
+    return nearest;
+  }
+
+  std::vector<char> nodes;
+  std::vector<int> indices;
+  DeformationGraph part;
+};
+
+TEST(MotionLog, APartIsSomeNodesFromTheFirstSightOfTheirsOn) {
+  SlidingPlate kept(kMuch), spooled(kLittle);
+  const Some some(spooled.graph, 4, 2 * 37);
+  const int first = some.part.first_seen.front();
+  ASSERT_LT(first, some.part.first_seen.back());
+  const MotionLog part = spooled.log.Part(some.nodes, some.part);
   const MotionHistory all = kept.log.All();
-  ASSERT_EQ(part.size(), kFrames - 37);
+  ASSERT_EQ(part.size(), kFrames - first / 2);
   for (int i = 0; i < part.size(); ++i) {
-    const FrameMotions& whole = all.frames[37 + i];
+    const FrameMotions& whole = all.frames[first / 2 + i];
     const FrameMotions frame = part.At(i);
     EXPECT_EQ(frame.frame, whole.frame);
-    ASSERT_EQ(frame.motions.size(), chosen.size());
-    for (std::size_t k = 0; k < chosen.size(); ++k) {
-      EXPECT_EQ(frame.motions[k].rotation, whole.motions[chosen[k]].rotation);
-      EXPECT_EQ(frame.Saw(static_cast<int>(k)), whole.Saw(chosen[k]));
+    ASSERT_EQ(frame.motions.size(), some.indices.size());
+    for (std::size_t k = 0; k < some.indices.size(); ++k) {
+      if (some.part.first_seen[k] > frame.frame) continue;
+      const int node = some.indices[k];
+      EXPECT_EQ(frame.motions[k].rotation, whole.motions[node].rotation);
+      EXPECT_EQ(frame.Saw(static_cast<int>(k)), whole.Saw(node));
     }
   }
-  ExpectSame(part.All(), kept.log.Part(nodes, first).All());
+  ExpectSame(part.All(), kept.log.Part(some.nodes, some.part).All());
   // It stays as it is when the rest goes on.
   const MotionHistory before = part.All();
   for (int frame = kFrames; frame < kFrames + 40; ++frame) spooled.Track(frame);
   ExpectSame(part.All(), before);
-  EXPECT_TRUE(
-      spooled.log.Part(std::vector<char>(spooled.graph.size(), true), 1000)
-          .empty());
+}
+
+TEST(MotionLog, NodesOfAPartMoveWithItsOwnBeforeTheyWereSeen) {
+  for (const std::size_t memory : {kMuch, kLittle}) {
+    SlidingPlate plate(memory);
+    const Some some(plate.graph, 3, 20);
+    const MotionLog part = plate.log.Part(some.nodes, some.part);
+    int before = 0;
+    for (int i = 0; i < part.size(); ++i) {
+      const FrameMotions frame = part.At(i);
+      for (int k = 0; k < some.part.size(); ++k) {
+        if (some.part.first_seen[k] <= frame.frame) continue;
+        const int nearest = some.Nearest(k);
+        // Eq. 1 by that node alone.
+        EXPECT_LT((frame.motions[k].rotation - frame.motions[nearest].rotation)
+                      .norm(),
+                  1e-6);
+        EXPECT_FALSE(frame.Saw(k));
+        ++before;
+      }
+    }
+    EXPECT_GT(before, 100);
+  }
+}
+
+TEST(MotionLog, APartOfNothingIsEmpty) {
+  const SlidingPlate plate(kLittle);
+  const std::vector<char> none(plate.graph.size(), false);
+  EXPECT_TRUE(plate.log.Part(none, DeformationGraph()).empty());
+  EXPECT_TRUE(MotionLog().Part({}, DeformationGraph()).empty());
 }
 
 /// Bytes of all that is known of a complete log beside its motions.
@@ -141,17 +197,19 @@ std::size_t IndexBytes(MotionLog log) {
 
 TEST(MotionLog, APartKnowsOfItsOwnNodesAlone) {
   // Thousands of parts of a long recording lie in the file: what is known of
-  // each must not be what is known of the whole.
+  // each must not grow with what is known of the whole.
   SlidingPlate plate(kLittle);
-  std::vector<char> nodes(plate.graph.size(), true);
-  const std::size_t whole = IndexBytes(plate.log.Part(nodes, 0));
-  nodes.assign(nodes.size(), false);
-  nodes[0] = true;
-  const MotionLog part = plate.log.Part(nodes, 0);
-  ASSERT_EQ(part.size(), kFrames);
-  constexpr std::size_t kHeads = std::size_t{kFrames} * 64;
-  EXPECT_LT(IndexBytes(part), kHeads);
-  EXPECT_GT(whole, 2 * kHeads);
+  for (int frame = kFrames; frame < 3 * kFrames; ++frame) plate.Track(frame);
+  const Some late(plate.graph, 1, 4 * kFrames);
+  ASSERT_GT(late.part.size(), 20);
+  ASSERT_LT(late.part.first_seen.front(), late.part.first_seen.back());
+  const MotionLog part = plate.log.Part(late.nodes, late.part);
+  EXPECT_LE(part.size(), kFrames);
+  // Of every block of 16 frames: heads, and an index or two of every node.
+  const int blocks = part.size() / 16 + 2;
+  const std::size_t bound =
+      blocks * (16 * 20 + late.part.size() * 12 + 100) + late.part.size() * 200;
+  EXPECT_LT(IndexBytes(part), bound);
 }
 
 TEST(MotionLog, IsRestoredAndGoesOnAsBefore) {

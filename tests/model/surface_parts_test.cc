@@ -50,7 +50,6 @@ TEST_F(PartsOfPlate, AreCarriedAsTheyWere) {
   EXPECT_LT(part.graph.size(), graph_.size());
   EXPECT_EQ(std::count(part.nodes.begin(), part.nodes.end(), true),
             part.graph.size());
-  EXPECT_EQ(part.first_frame, 2);
   const WarpField warp(part.graph), whole(graph_);
   const SkinningIndex part_index(part.graph, kNeighbors);
   const SkinningIndex index(graph_, kNeighbors);
@@ -78,8 +77,8 @@ TEST_F(PartsOfPlate, BeginWithTheirFirstSight) {
   }
   const std::vector<SurfacePart> parts = Parts();
   ASSERT_EQ(parts.size(), 2u);  // 11 and 99 frames, now among them.
-  EXPECT_EQ(parts[0].first_frame, 90);
-  EXPECT_EQ(parts[1].first_frame, 2);
+  EXPECT_EQ(parts[0].graph.first_seen.front(), 90);
+  EXPECT_EQ(parts[1].graph.first_seen.front(), 2);
   EXPECT_LT(parts[0].graph.size(), graph_.size() / 2);
   const std::size_t both =
       parts[0].mesh.triangles.size() + parts[1].mesh.triangles.size();
