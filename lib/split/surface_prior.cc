@@ -45,6 +45,7 @@ class Evidence {
         detected_(!observation.mask.empty()),
         labels_(compared.labels(crop)),
         agreement_(compared.agreement(crop)),
+        background_(compared.background(crop)),
         cut_(cut),
         options_(options) {
     if (!observation.others.empty()) others_ = observation.others(crop);
@@ -72,8 +73,11 @@ class Evidence {
   /// its own: both are the detector's word on one pixel.
   double OfMasks(int v, int u, float distance) const {
     const double own = OfMask(distance);
-    const bool other = !others_.empty() && others_(v, u) != 0;
-    return other ? std::max(own, 0.0) - options_.mask_weight : own;
+    return OfOther(v, u) ? std::max(own, 0.0) - options_.mask_weight : own;
+  }
+
+  bool OfOther(int v, int u) const {
+    return !others_.empty() && others_(v, u) != 0;
   }
 
   double OfMask(float distance) const {
@@ -90,7 +94,7 @@ class Evidence {
     const bool own = surface_ > 0 && label == surface_;
     switch (static_cast<DepthState>(agreement_(v, u))) {
       case DepthState::kObserved:
-        if (own) return options_.prediction_weight;
+        if (own) return options_.prediction_weight + OfBackground(v, u);
         return label == 0 ? -options_.background_weight
                           : -options_.prediction_weight;
       case DepthState::kFree:
@@ -102,10 +106,26 @@ class Evidence {
     }
   }
 
+  /// What lies behind a surface tells, too: a foot stands in front of the floor
+  /// that was mapped, and a piece of floor that was taken up with it does not.
+  /// In the mask of another one it says nothing, as that stands before it, too.
+  double OfBackground(int v, int u) const {
+    if (OfOther(v, u)) return 0.0;
+    switch (static_cast<DepthState>(background_(v, u))) {
+      case DepthState::kObserved:
+        return -options_.background_weight;
+      case DepthState::kOccluded:
+        return options_.unexplained_weight;
+      default:
+        return 0.0;
+    }
+  }
+
   const int surface_;
   const bool detected_;
   const LabelImage labels_;
   const cv::Mat_<uchar> agreement_;
+  const cv::Mat_<uchar> background_;
   cv::Mat_<uchar> others_;
   const GraphCutOptions& cut_;
   const PriorOptions& options_;
@@ -194,7 +214,7 @@ cv::Mat_<uchar> CutOut(const cv::Mat_<uchar>& mask, const PointMap& points,
                        const PriorOptions& options) {
   ComparedDepth unknown;
   unknown.labels = LabelImage(mask.size(), 0);
-  unknown.agreement =
+  unknown.agreement = unknown.background =
       cv::Mat_<uchar>(mask.size(), static_cast<uchar>(DepthState::kUnmeasured));
   const SurfaceEvidence evidence =
       GatherEvidence({0, mask, {}, {}}, unknown, cut, options);

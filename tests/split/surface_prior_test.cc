@@ -92,6 +92,19 @@ TEST_F(GatherEvidenceTest, ThePredictionSpeaksAsLoudAsTheDetection) {
   EXPECT_GT(At({55, 82}, mask_), 0);
 }
 
+TEST_F(GatherEvidenceTest, WhatLiesBehindASurfaceTellsToo) {
+  const cv::Rect foot(50, 80, 10, 30);
+  Predict(foot, 1, DepthState::kObserved);
+  compared_.background(foot) = static_cast<uchar>(DepthState::kOccluded);
+  EXPECT_GT(At({55, 105}, mask_), 0);
+  compared_.background(foot) = static_cast<uchar>(DepthState::kObserved);
+  EXPECT_LT(At({55, 105}, mask_), 0);
+  // Another one stands before it, too.
+  compared_.background(foot) = static_cast<uchar>(DepthState::kOccluded);
+  others_ = RectMask(foot);
+  EXPECT_EQ(At({55, 105}, mask_), 0);
+}
+
 TEST_F(GatherEvidenceTest, MasksSpeakAgainstAPixelOnce) {
   const cv::Rect body(50, 80, 10, 30);
   Predict(body, 1, DepthState::kObserved);
