@@ -214,15 +214,20 @@ void RefinedRun::WriteOptions(const RunPaths& to) const {
   WriteFileAtomically(to.Options(), [&](std::ostream& out) { out << text; });
 }
 
-int RefinedRun::Write(RunFolder* folder) {
+int RefinedRun::Write(RunFolder* folder,
+                      const std::function<void(int, int)>& shown) {
   const RunPaths& to = folder->unfinished();
   CopyFiles(to);
   const std::map<int, Rigid3d> poses = PosesOf(run_);
   const WarpedOutput warped = WarpedOf(root_, marker_);
   Refinement refinement;
-  for (RecordedSurface& surface : run_.surfaces) {
-    RefineSurface(poses, options_, warped, to, std::move(surface), &refinement);
+  const auto total = static_cast<int>(run_.surfaces.size());
+  for (int done = 0; done < total; ++done) {
+    shown(done, total);
+    RefineSurface(poses, options_, warped, to, std::move(run_.surfaces[done]),
+                  &refinement);
   }
+  shown(total, total);
   refinement.report.Write(to);
   WriteOptions(to);
   const Json summary =

@@ -1,6 +1,7 @@
 #ifndef SPLITFUSION_PIPELINES_REFINED_RUN_H_
 #define SPLITFUSION_PIPELINES_REFINED_RUN_H_
 
+#include <functional>
 #include <string>
 
 #include "splitfusion/lib/evaluation/recorded_run.h"
@@ -29,10 +30,11 @@ class RefinedRun {
   /// Copies what stays of the run into `folder`, fresh and not finished, writes
   /// motions.bin, warped meshes, refinement.jsonl, summary.json, report.html
   /// and options.flags anew, and puts it all into place. Returns the number of
-  /// nodes that were hidden, each frame counted. Call it once.
+  /// nodes that were hidden, each frame counted. Call it once. `shown` is told
+  /// how many surfaces of how many are done.
   ///
   /// @throw InputError if a file cannot be read or written.
-  int Write(RunFolder* folder);
+  int Write(RunFolder* folder, const std::function<void(int, int)>& shown);
 
  private:
   void CopyFiles(const RunPaths& to) const;

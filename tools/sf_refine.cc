@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "progress_line.h"
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/thread_limit.h"
 #include "splitfusion/pipelines/refined_run.h"
@@ -52,7 +53,11 @@ int Run(const std::vector<std::string>& arguments) {
               << "nothing to do\n";
     return kExitDone;
   }
-  const int hidden = refined.Write(&folder);
+  ProgressLine progress;
+  const int hidden = refined.Write(&folder, [&](int done, int total) {
+    progress.Show(done, total, "surfaces", 0);
+  });
+  progress.End();
   std::cout << FLAGS_output << ": " << hidden
             << " motions of hidden nodes were found anew\n";
   return kExitDone;

@@ -142,9 +142,19 @@ FrameMotions MotionLog::Load(int i) const {
   const Block& block = *blocks_[BlockOf(i)];
   const SpooledFrame& head = HeadOf(i);
   const std::vector<int>& numbers = *block.numbers;
-  const std::size_t seen_from = block.nodes * sizeof(SpooledMotion);
-  std::vector<char> bytes(seen_from + (head.has_seen ? block.nodes : 0));
-  file_->Read(head.offset, bytes.data(), bytes.size());
+  const std::vector<int>& places = block.places;
+  // A part's few nodes lie near each other.
+  const std::size_t first = places.empty() ? 0 : places.front();
+  const std::size_t count =
+      (places.empty() ? block.nodes : places.back() + 1) - first;
+  std::vector<char> bytes(count * sizeof(SpooledMotion));
+  file_->Read(head.offset + first * sizeof(SpooledMotion), bytes.data(),
+              bytes.size());
+  std::vector<char> were_seen(count);
+  if (head.has_seen) {
+    file_->Read(head.offset + block.nodes * sizeof(SpooledMotion) + first,
+                were_seen.data(), count);
+  }
   const std::vector<char> needed = Needed();
   std::vector<int> place(nodes_ever_, -1);
   std::vector<NodeMotion> motions;
@@ -156,9 +166,9 @@ FrameMotions MotionLog::Load(int i) const {
     seen.push_back(was_seen);
   };
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const std::size_t at = block.places.empty() ? k : block.places[k];
+    const std::size_t at = places.empty() ? k : places[k] - first;
     add(numbers[k], MotionFrom(&bytes[at * sizeof(SpooledMotion)]),
-        head.has_seen ? bytes[seen_from + at] : char{false});
+        were_seen[at]);
   }
   for (const Births& births : births_) {
     const bool known = births.numbers->front() < block.nodes_ever;
