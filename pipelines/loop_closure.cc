@@ -158,10 +158,11 @@ LoopClosure CloseLoops(const std::vector<PathFrame>& path,
   report.found = static_cast<int>(found.size());
   report.kept = static_cast<int>(kept.size());
   report.misfit_before = RmsContradiction(before, kept);
-  report.misfit_after = RmsContradiction(after, kept);
   // What correspondences reach they have closed; the rest is what landmarks are
   // uncertain by.
-  if (report.largest_drift > reach) Correct(path, before, after, &closure);
+  const bool corrects = report.largest_drift > reach;
+  report.misfit_after = RmsContradiction(corrects ? after : before, kept);
+  if (corrects) Correct(path, before, after, &closure);
   return closure;
 }
 

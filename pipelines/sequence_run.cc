@@ -14,6 +14,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/median.h"
 #include "splitfusion/lib/base/process_memory.h"
+#include "splitfusion/lib/base/temporary_files_folder.h"
 #include "splitfusion/lib/model/surface_uncertainty.h"
 #include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/report/frame_pictures.h"
@@ -61,6 +62,8 @@ SequenceRun::SequenceRun(std::unique_ptr<Reconstruction> work,
   WriteCalibration(directory_->paths().Calibration(),
                    work_->reader.calibration());
   WriteColorRegistration();
+  const std::string times_note = work_->reader.TimesNote();
+  if (!times_note.empty()) Warn(times_note);
   if (!work_->rows_note.empty()) {
     Warn(work_->rows_note + "; undone (--rolling_shutter, docs/your_data.md)");
   }
@@ -106,6 +109,8 @@ bool SequenceRun::Resume() {
     OpenDirectory(/*goes_on=*/true);
     ReadArchiveFile(folder_.unfinished().Checkpoint(), kCheckpointVersion,
                     [&](ArchiveReader* archive) { Serialize(archive); });
+  } catch (const TemporaryFileError&) {
+    throw;  // The checkpoint is as good as it was.
   } catch (const InputError& error) {
     directory_.reset();
     done_ = 0;

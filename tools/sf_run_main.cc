@@ -173,6 +173,7 @@ void CheckValues() {
               FLAGS_checkpoint_every, "a number of frames, 0 or -1");
   CheckOption(!FLAGS_keep_checkpoints || FLAGS_checkpoint_every > 0,
               "keep_checkpoints", "true", "--checkpoint_every above 0");
+  CheckOption(FLAGS_at >= 0, "at", FLAGS_at, "a number of frames");
   CheckOption(FLAGS_at == 0 || !FLAGS_from.empty(), "at", FLAGS_at,
               "--from beside it");
   CheckOption(!FLAGS_keep_same || FLAGS_overwrite, "keep_same", "true",

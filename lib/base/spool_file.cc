@@ -6,16 +6,15 @@
 #include <cstring>
 #include <string>
 
-#include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/temporary_files_folder.h"
 
 namespace splitfusion {
 namespace {
 
 [[noreturn]] void FailSpooling(const std::string& what) {
-  throw InputError(TemporaryFilesFolder() + ": temporary file cannot be " +
-                   what + ": " + std::strerror(errno) +
-                   ": expected a folder with room (TMPDIR)");
+  throw TemporaryFileError(
+      TemporaryFilesFolder() + ": temporary file cannot be " + what + ": " +
+      std::strerror(errno) + ": expected a folder with room (TMPDIR)");
 }
 
 }  // namespace

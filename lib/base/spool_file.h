@@ -18,18 +18,18 @@ class SpoolFile {
 
   /// Writes bytes behind all others; returns where they begin.
   ///
-  /// @throw InputError if the file cannot be made, or they cannot be written,
+  /// @throw TemporaryFileError if it cannot be made, or they cannot be written,
   ///     as on a full disk.
   std::uint64_t Append(const void* data, std::size_t bytes);
 
   /// Writes bytes in place of others.
   ///
-  /// @throw InputError as Append().
+  /// @throw TemporaryFileError as Append().
   void Write(std::uint64_t offset, const void* data, std::size_t bytes);
 
   /// Reads bytes that were written; from several threads at once, too.
   ///
-  /// @throw InputError if they cannot be read.
+  /// @throw TemporaryFileError if they cannot be read.
   void Read(std::uint64_t offset, void* data, std::size_t bytes) const;
 
  private:

@@ -3,11 +3,20 @@
 
 #include <string>
 
+#include "splitfusion/lib/base/error.h"
+
 namespace splitfusion {
+
+/// The folder of temporary files does not do, or has no room: whatever was
+/// being read is not to blame.
+class TemporaryFileError : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 /// The folder of temporary files: TMPDIR, or else /tmp.
 ///
-/// @throw InputError if it is no folder.
+/// @throw TemporaryFileError if it is no folder.
 std::string TemporaryFilesFolder();
 
 }  // namespace splitfusion

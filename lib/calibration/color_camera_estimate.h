@@ -22,17 +22,17 @@ struct ColorCameraEstimate {
   double strength_before = 0;
   /// ... and with the estimate: means over the frames.
   double strength_after = 0;
-  /// Standard deviation of the difference of the two between frames.
-  double strength_spread = 0;
   /// Median distance between a depth edge's place in the colour image with the
   /// estimate and as if registered, pixels.
   double shift = 0;
 
-  /// Whether the images are certainly not registered: the edges fit better in
-  /// nearly every frame, by twice the spread (colour that is late by some
-  /// milliseconds is off by what the camera turns, not by a pose), and lie
-  /// farther apart than depth edges are known, which structured light puts up
-  /// to 3 pixels off.
+  /// Whether the images are certainly not registered: as they are, colour is no
+  /// stronger at edges of depth than anywhere, and with the estimate nearly
+  /// twice as strong at least, and they lie farther apart than depth edges are
+  /// known, which structured light puts up to 3 pixels off. Where images are
+  /// registered something can be found that fits a little better, too, the same
+  /// in every frame if the camera stands, or if it turns one way and the colour
+  /// is some milliseconds late.
   bool IsNeeded() const;
   /// One line for people.
   std::string Text() const;

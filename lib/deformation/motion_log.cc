@@ -64,6 +64,7 @@ std::shared_ptr<const std::vector<int>> NumbersFrom(int begin, int end) {
 
 MotionLog::Block MotionLog::Block::Part(const std::vector<int>& chosen,
                                         int first_frame) const {
+  assert(places.empty());
   Block part;
   std::copy_if(frames.begin(), frames.end(), std::back_inserter(part.frames),
                [&](const SpooledFrame& f) { return f.index >= first_frame; });

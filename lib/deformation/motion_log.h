@@ -73,7 +73,7 @@ class MotionLog {
   /// in which the first of them was seen. It knows of its own nodes alone:
   /// before another was, it moves with the nearest one that was before it.
   ///
-  /// `graph`: of these nodes, with `first_seen`, which ascends.
+  /// `graph`: of these nodes, with `first_seen`, which ascends. Not of a part.
   ///
   /// @throw InputError as Append().
   MotionLog Part(const std::vector<char>& nodes,

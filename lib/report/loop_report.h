@@ -10,7 +10,7 @@ struct LoopReport {
   int found = 0;              ///< On whose motion enough landmarks agree.
   int kept = 0;               ///< With which the solution agrees.
   double misfit_before = 0;   ///< RMS of kept ones, metres.
-  double misfit_after = 0;    ///< Likewise, with the poses as corrected.
+  double misfit_after = 0;    ///< Likewise, with the poses as they stay.
   double largest_change = 0;  ///< Of what a key frame shows, RMS, metres.
   double largest_shift = 0;   ///< Of a key frame's camera, metres.
   double largest_turn = 0;    ///< Likewise, radians.

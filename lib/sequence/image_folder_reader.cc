@@ -168,6 +168,20 @@ void ImageFolderReader::SkipBadFrames() {
                    " frames can be read)");
 }
 
+std::string ImageFolderReader::TimesNote() const {
+  const auto place = std::adjacent_find(
+      pairs_.begin(), pairs_.end(),
+      [](const AssociatedFiles& one, const AssociatedFiles& next) {
+        return !(one.depth.timestamp < next.depth.timestamp);
+      });
+  if (place == pairs_.end()) return "";
+  return folder_ + ": frame " +
+         std::to_string(indices_[place - pairs_.begin() + 1]) +
+         " has time stamp " + std::to_string(place[1].depth.timestamp) +
+         " after " + std::to_string(place[0].depth.timestamp) +
+         ": expected ascending seconds";
+}
+
 void ImageFolderReader::FindPoses() {
   const Trajectory given = ReadTumTrajectory(options_.trajectory);
   for (std::size_t i = 0; i < pairs_.size(); ++i) {

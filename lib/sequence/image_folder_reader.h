@@ -90,6 +90,10 @@ class ImageFolderReader {
   /// Next() runs on another thread.
   std::vector<BadFrame> skipped() const;
 
+  /// What is wrong with the time stamps, one line; empty if they ascend. All
+  /// that is known of velocities comes from them.
+  std::string TimesNote() const;
+
   /// Stem of the depth file of the i-th frame that is read, 0..size() - 1.
   std::string Stem(int i) const;
 

@@ -1,5 +1,6 @@
 #include "splitfusion/lib/sequence/image_folder_reader.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -61,6 +62,16 @@ TEST_F(ImageFolderReaderTest, GivesFramesInOrder) {
     EXPECT_EQ(frame->color.at<cv::Vec3b>(5, 7), cv::Vec3b(10, 20, 30 + i));
   }
   EXPECT_FALSE(reader.Next().has_value());
+}
+
+TEST_F(ImageFolderReaderTest, TimeStampsThatDoNotAscendAreNoted) {
+  EXPECT_EQ(ImageFolderReader(folder_ / "").TimesNote(), "");
+  folder_.Write("associations.txt",
+                "0 rgb/c0.png 0.5 depth/d0.png\n"
+                "1 rgb/c1.png 1.5 depth/d1.png\n"
+                "2 rgb/c2.png 1.5 depth/d2.png\n");
+  EXPECT_THAT(ImageFolderReader(folder_ / "").TimesNote(),
+              testing::HasSubstr("frame 2 has time stamp 1.5"));
 }
 
 TEST_F(ImageFolderReaderTest, ReadsAPartUnderItsOwnIndices) {

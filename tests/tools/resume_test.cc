@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -198,6 +199,22 @@ TEST_F(Resume, ACheckpointThatIsDamagedIsNotTrusted) {
   const ProgramResult result = Run("run", kOptions);
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.errors, HasSubstr("begins anew"));
+  ExpectSameResult("whole", "run");
+}
+
+TEST_F(Resume, AFolderOfTemporaryFilesThatIsGoneDoesNotCostTheCheckpoint) {
+  ASSERT_EQ(Run("whole", kOptions).exit_code, 0);
+  ASSERT_TRUE(Stop("run", kOptions, 12, SIGKILL));
+  const std::string state = folder_.Read("run/unfinished/checkpoint.bin");
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("TMPDIR", (folder_ / "missing").c_str(), /*overwrite=*/1);
+  const ProgramResult result = Run("run", kOptions);
+  setenv("TMPDIR", kept.c_str(), /*overwrite=*/1);  // Empty: as if unset.
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, HasSubstr("expected a folder for temporary"));
+  EXPECT_EQ(folder_.Read("run/unfinished/checkpoint.bin"), state);
+  EXPECT_EQ(Run("run", kOptions).exit_code, 0);
   ExpectSameResult("whole", "run");
 }
 
