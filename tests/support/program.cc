@@ -30,10 +30,12 @@ bool HasProgram(const std::string& name) {
   return std::filesystem::exists(ProgramFolder() / name);
 }
 
-ProgramResult RunProgram(const std::string& name,
-                         const std::string& arguments) {
+ProgramResult RunProgram(const std::string& name, const std::string& arguments,
+                         const std::string& environment) {
   const TemporaryFolder folder;
-  return Result(std::system(Command(name, arguments, folder).c_str()), folder);
+  const std::string command =
+      environment + " " + Command(name, arguments, folder);
+  return Result(std::system(command.c_str()), folder);
 }
 
 RunningProgram::RunningProgram(const std::string& name,

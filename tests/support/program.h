@@ -20,7 +20,9 @@ struct ProgramResult {
 bool HasProgram(const std::string& name);
 
 /// Runs a program of the build; `arguments` as one would type them.
-ProgramResult RunProgram(const std::string& name, const std::string& arguments);
+/// `environment`: variables that it has beside those of the test, "NAME=value".
+ProgramResult RunProgram(const std::string& name, const std::string& arguments,
+                         const std::string& environment = "");
 
 /// A program of the build that runs beside the test, alone in its process
 /// group.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -206,15 +205,14 @@ TEST_F(Resume, AFolderOfTemporaryFilesThatIsGoneDoesNotCostTheCheckpoint) {
   ASSERT_EQ(Run("whole", kOptions).exit_code, 0);
   ASSERT_TRUE(Stop("run", kOptions, 12, SIGKILL));
   const std::string state = folder_.Read("run/unfinished/checkpoint.bin");
-  const char* before = std::getenv("TMPDIR");
-  const std::string kept = before == nullptr ? "" : before;
-  setenv("TMPDIR", (folder_ / "missing").c_str(), /*overwrite=*/1);
-  const ProgramResult result = Run("run", kOptions);
-  setenv("TMPDIR", kept.c_str(), /*overwrite=*/1);  // Empty: as if unset.
+  const ProgramResult result = RunProgram("sf_run", Arguments("run", kOptions),
+                                          "TMPDIR=" + (folder_ / "missing"));
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.errors, HasSubstr("expected a folder for temporary"));
   EXPECT_EQ(folder_.Read("run/unfinished/checkpoint.bin"), state);
-  EXPECT_EQ(Run("run", kOptions).exit_code, 0);
+  EXPECT_EQ(
+      RunProgram("sf_run", Arguments("run", kOptions), "TMPDIR=").exit_code,
+      0);  // As if it were unset.
   ExpectSameResult("whole", "run");
 }
 
