@@ -54,6 +54,7 @@ NodeMotion MotionFrom(const char* bytes) {
   return motion;
 }
 
+/// The numbers of nodes from `begin` up to the one before `end`.
 std::shared_ptr<const std::vector<int>> NumbersFrom(int begin, int end) {
   std::vector<int> numbers(end - begin);
   std::iota(numbers.begin(), numbers.end(), begin);
