@@ -3,6 +3,7 @@
 #include "splitfusion/cost_functions/acceleration.h"
 #include "splitfusion/cost_functions/arap.h"
 #include "splitfusion/cost_functions/color_constancy.h"
+#include "splitfusion/cost_functions/hidden_motion.h"
 #include "splitfusion/cost_functions/live_to_model.h"
 #include "splitfusion/cost_functions/normal.h"
 #include "splitfusion/cost_functions/point_to_plane.h"
@@ -41,6 +42,10 @@ TermRegistry BuiltinTerms() {
   registry.Register("point_to_tsdf",
                     [] { return std::make_unique<PointToTsdfTerm>(); });
   registry.Register("normal", [] { return std::make_unique<NormalTerm>(); });
+  registry.Register("hidden_arap",
+                    [] { return std::make_unique<HiddenArapTerm>(); });
+  registry.Register("hidden_smoothness",
+                    [] { return std::make_unique<HiddenSmoothnessTerm>(); });
   return registry;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 
+#include "splitfusion/lib/energy/frozen_problem.h"
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/model/hidden_motions.h"
 #include "splitfusion/lib/model/surface_model.h"
@@ -15,12 +16,21 @@ namespace splitfusion {
 /// What is kept of every surface, with the motions as they were tracked.
 SurfaceModels ModelsOf(const SplitFusion& fusion);
 
+/// The problem of a window as one that sf_solve takes: with the terms of
+/// cost_functions/hidden_motion.h, weighted so that its energy is that of
+/// RefineHiddenMotions() divided by the number of its edges (1 if it has none)
+/// and s^2, s = 1 cm.
+FrozenProblem FreezeWindow(const WindowProblem& window, int surface,
+                           double smoothness);
+
 /// Finds the hidden motions of a surface, RefineHiddenMotions(), and their
 /// deviations, and adds them to a report. Returns how many nodes were hidden,
-/// each frame counted. `world_from_camera`: by frame index.
+/// each frame counted. `world_from_camera`: by frame index. `solved`: as
+/// RefineHiddenMotions().
 int RefineAndReport(const std::map<int, Rigid3d>& world_from_camera,
                     const HiddenMotionOptions& options, int surface,
-                    SurfaceModel* model, RefinementReport* report);
+                    SurfaceModel* model, RefinementReport* report,
+                    const std::function<void(const WindowProblem&)>& solved);
 
 /// A pass over all frames, once they are tracked: finds the motions of what was
 /// hidden, see RefineHiddenMotions(), of all surfaces but a background that is

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/json_file.h"
 #include "splitfusion/lib/base/stopwatch.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "splitfusion/lib/page/html_report.h"
 #include "splitfusion/lib/report/run_summary.h"
 #include "splitfusion/lib/report/surface_output.h"
@@ -37,7 +39,8 @@ bool IsWrittenAnew(const std::string& path) {
          path == here.Options() || path == here.Evaluation() ||
          first == "checkpoints" || file.filename() == "motions.bin" ||
          file.filename() == "residuals.h5" ||
-         file.parent_path().filename() == "warped";
+         file.parent_path().filename() == "warped" ||
+         file.filename().string().find("_hidden_") != std::string::npos;
 }
 
 /// The options by the names that they have as flags.
@@ -86,11 +89,8 @@ struct Refinement {
 
 /// @throw InputError if nothing is known of what was seen.
 void CheckSeen(const std::string& root, const RecordedSurface& surface) {
-  const auto& frames = surface.motions.frames;
-  if (std::any_of(frames.begin(), frames.end(), [](const FrameMotions& frame) {
-        return !frame.seen.empty();
-      })) {
-    return;
+  for (const FrameMotions& frame : surface.motions) {
+    if (!frame.seen.empty()) return;
   }
   throw InputError(root + ": motions.bin of surface " +
                    std::to_string(surface.id) +
@@ -98,18 +98,47 @@ void CheckSeen(const std::string& root, const RecordedSurface& surface) {
                    "this version of sf_run");
 }
 
+/// Writes every n-th of the windows of a surface as a problem of its own.
+class WindowFreezer {
+ public:
+  /// `every`: n; 0: none. `to` must outlive this.
+  WindowFreezer(int every, double smoothness, const RunPaths& to)
+      : every_(every), smoothness_(smoothness), to_(to) {}
+
+  /// What is told of those of a surface; empty if none is to be written.
+  std::function<void(const WindowProblem&)> Of(int surface) {
+    if (every_ == 0) return {};
+    windows_ = 0;
+    return [this, surface](const WindowProblem& window) {
+      if (windows_++ % every_ != 0) return;
+      const RefinedWindow& report = window.report;
+      WriteFrozenProblem(
+          to_.HiddenProblem(report.first_frame, surface, report.part),
+          FreezeWindow(window, surface, smoothness_));
+    };
+  }
+
+ private:
+  int every_;
+  double smoothness_;
+  const RunPaths& to_;
+  int windows_ = 0;
+};
+
 void RefineSurface(const std::map<int, Rigid3d>& poses,
                    const HiddenMotionOptions& options,
                    const WarpedOutput& warped, const RunPaths& to,
-                   RecordedSurface surface, Refinement* refinement) {
+                   RecordedSurface surface, WindowFreezer* freezer,
+                   Refinement* refinement) {
   SurfaceModel model{std::move(surface.mesh), std::move(surface.graph),
                      std::move(surface.motions)};
   // The camera's motion was measured in every frame.
   const bool is_room = surface.id == 0 && model.graph.rigid();
   if (!is_room) {
     const Stopwatch stopwatch;
-    refinement->hidden += RefineAndReport(poses, options, surface.id, &model,
-                                          &refinement->report);
+    refinement->hidden +=
+        RefineAndReport(poses, options, surface.id, &model, &refinement->report,
+                        freezer->Of(surface.id));
     refinement->seconds += stopwatch.Seconds();
   }
   WriteMotions(to.Surface(surface.id, surface.label) + "/motions.bin",
@@ -142,8 +171,9 @@ Json SummaryWith(const Refinement& refinement, Json summary) {
 
 }  // namespace
 
-RefinedRun::RefinedRun(std::string root, const HiddenMotionOptions& options)
-    : root_(std::move(root)), options_(options) {
+RefinedRun::RefinedRun(std::string root, const HiddenMotionOptions& options,
+                       int freeze)
+    : root_(std::move(root)), options_(options), freeze_(freeze) {
   CheckOptions(options_);
   const std::optional<RunMarker> marker = ReadRunMarker(root_);
   if (!marker || marker->status != RunStatus::kComplete) {
@@ -174,6 +204,7 @@ RunIdentity RefinedRun::Identity() const {
   for (const auto& [name, value] : ValuesOf(options_)) {
     identity.parts[name] = value;
   }
+  if (freeze_ > 0) identity.outputs["freeze_hidden"] = std::to_string(freeze_);
   return identity;
 }
 
@@ -221,11 +252,12 @@ int RefinedRun::Write(RunFolder* folder,
   const std::map<int, Rigid3d> poses = PosesOf(run_);
   const WarpedOutput warped = WarpedOf(root_, marker_);
   Refinement refinement;
+  WindowFreezer freezer(freeze_, options_.smoothness, to);
   const auto total = static_cast<int>(run_.surfaces.size());
   for (int done = 0; done < total; ++done) {
     shown(done, total);
     RefineSurface(poses, options_, warped, to, std::move(run_.surfaces[done]),
-                  &refinement);
+                  &freezer, &refinement);
   }
   shown(total, total);
   refinement.report.Write(to);

@@ -16,12 +16,14 @@ namespace splitfusion {
 /// than it has; its images are not needed.
 class RefinedRun {
  public:
-  /// Reads the run.
+  /// Reads the run. `freeze`: every n-th window of a surface becomes a frozen
+  /// problem, FreezeWindow(); 0: none.
   ///
   /// @throw InputError if the folder holds no complete run, one that does not
   ///     say what was seen, or one in which a file is not as it was written;
   ///     OptionError if an option is out of its range.
-  RefinedRun(std::string root, const HiddenMotionOptions& options);
+  RefinedRun(std::string root, const HiddenMotionOptions& options,
+             int freeze = 0);
 
   /// What decides the result: that of the run, the options, and that it began
   /// with what the run has.
@@ -42,6 +44,7 @@ class RefinedRun {
 
   std::string root_;
   HiddenMotionOptions options_;
+  int freeze_;
   RunMarker marker_;
   RecordedRun run_;  // Surfaces until they are written.
 };

@@ -22,6 +22,9 @@ DEFINE_int32(refine_window, splitfusion::HiddenMotionOptions().window,
 DEFINE_int32(refine_samples, splitfusion::HiddenMotionOptions().samples,
              "Solutions under noise from which deviations of what was hidden "
              "are estimated; 0 = none.");
+DEFINE_int32(freeze, 0,
+             "Write every N-th window of a surface as a problem for sf_solve; "
+             "0 = none.");
 DEFINE_int32(threads, 0, "Threads; 0 = all cores. The result is the same.");
 
 namespace splitfusion {
@@ -42,7 +45,8 @@ int Run(const std::vector<std::string>& arguments) {
   options.smoothness = FLAGS_refine_smoothness;
   options.window = FLAGS_refine_window;
   options.samples = FLAGS_refine_samples;
-  RefinedRun refined(arguments.front(), options);
+  CheckOption(FLAGS_freeze >= 0, "freeze", FLAGS_freeze, ">= 0");
+  RefinedRun refined(arguments.front(), options, FLAGS_freeze);
   const ThreadLimit threads(FLAGS_threads);
   RunFolderOptions folder_options;
   folder_options.overwrite = FLAGS_overwrite;

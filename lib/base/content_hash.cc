@@ -11,8 +11,18 @@
 
 namespace splitfusion {
 
-ContentHash::ContentHash()
-    : state_(XXH3_createState(), [](auto* state) { XXH3_freeState(state); }) {
+namespace {
+
+using HashState = std::unique_ptr<XXH3_state_s, void (*)(XXH3_state_s*)>;
+
+HashState NewHashState() {
+  return {XXH3_createState(),
+          [](XXH3_state_s* state) { XXH3_freeState(state); }};
+}
+
+}  // namespace
+
+ContentHash::ContentHash() : state_(NewHashState()) {
   XXH3_128bits_reset(state_.get());
 }
 
@@ -29,6 +39,18 @@ ContentHash& ContentHash::Add(const std::string& text) {
 std::string ContentHash::Hex() const {
   const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
   return cv::format("%016lx%016lx", hash.high64, hash.low64);
+}
+
+RunningChecksum64::RunningChecksum64() : state_(NewHashState()) {
+  XXH3_64bits_reset(state_.get());
+}
+
+void RunningChecksum64::Add(const void* data, std::size_t bytes) {
+  XXH3_64bits_update(state_.get(), data, bytes);
+}
+
+std::uint64_t RunningChecksum64::Value() const {
+  return XXH3_64bits_digest(state_.get());
 }
 
 std::uint64_t Checksum64(const void* data, std::size_t bytes) {

@@ -29,7 +29,24 @@ class ContentHash {
   std::unique_ptr<XXH3_state_s, void (*)(XXH3_state_s*)> state_;
 };
 
-/// XXH3 with 64 bits, for the checksums within binary files.
+/// XXH3 with 64 bits, for the checksums within binary files, of bytes that are
+/// given piece by piece.
+class RunningChecksum64 {
+ public:
+  /// Of nothing so far.
+  RunningChecksum64();
+
+  /// Appends bytes.
+  void Add(const void* data, std::size_t bytes);
+
+  /// Of all that was added.
+  std::uint64_t Value() const;
+
+ private:
+  std::unique_ptr<XXH3_state_s, void (*)(XXH3_state_s*)> state_;
+};
+
+/// The same of bytes that are all there.
 std::uint64_t Checksum64(const void* data, std::size_t bytes);
 
 /// Hash of a file's content, as ContentHash::Hex().

@@ -1,9 +1,12 @@
 #ifndef SPLITFUSION_LIB_DEFORMATION_MOTION_HISTORY_H_
 #define SPLITFUSION_LIB_DEFORMATION_MOTION_HISTORY_H_
 
-#include <string>
+#include <cstddef>
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "splitfusion/lib/base/spooled_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 
 namespace splitfusion {
@@ -47,6 +50,9 @@ struct FrameMotions {
            seen[index] != 0;
   }
 
+  /// What it takes of memory.
+  std::size_t bytes() const;
+
   /// Sets the motions of those nodes that have one here, of all that there are.
   void SpreadTo(std::vector<NodeMotion>* all) const;
 
@@ -60,44 +66,105 @@ struct FrameMotions {
 /// Motions of one surface through time, by ascending frame. Nodes born later
 /// have motions in the earlier frames too (blended from the nodes that existed
 /// then), so that every vertex of the final model can be carried to every
-/// frame since the surface's birth.
-struct MotionHistory {
-  std::vector<FrameMotions> frames;  ///< Ascending by frame index.
+/// frame since the surface's birth. Long ones do not fill the memory: what is
+/// more than it may take lies in a temporary file.
+class MotionHistory {
+ public:
+  /// Goes over the frames.
+  class Iterator {
+   public:
+    /// Frame `i` of a history, which must outlive this.
+    Iterator(const MotionHistory* history, int i) : history_(history), i_(i) {}
 
-  /// Motions of a frame; null if the surface has none for it.
-  const FrameMotions* Find(int frame) const;
+    /// The frame.
+    FrameMotions operator*() const { return history_->At(i_); }
+    /// Goes to the next one.
+    Iterator& operator++() {
+      ++i_;
+      return *this;
+    }
+    /// Whether it is another one of the same history.
+    bool operator!=(const Iterator& other) const { return i_ != other.i_; }
 
-  /// Saves or restores it, see lib/base/archive.h.
-  template <typename Archive>
-  void Serialize(Archive* archive) {
-    (*archive)(frames);
-  }
+   private:
+    const MotionHistory* history_;
+    int i_;
+  };
+
+  /// `memory`: bytes of motions that lie in memory.
+  explicit MotionHistory(std::size_t memory = kMemory) : memory_(memory) {}
+
+  /// Number of frames.
+  int size() const { return static_cast<int>(places_.size()); }
+  /// Whether there is none.
+  bool empty() const { return places_.empty(); }
+  /// Index of frame i, 0 to size() - 1, in the sequence.
+  int frame(int i) const { return places_[i].frame; }
+
+  /// Motions of frame i.
+  ///
+  /// @throw InputError if the file cannot be read.
+  FrameMotions At(int i) const;
+  /// Whether there is a frame with this index.
+  bool Has(int frame) const { return IndexOf(frame) >= 0; }
+  /// Motions of the frame with this index; none if the surface has none for it.
+  ///
+  /// @throw InputError as At().
+  std::optional<FrameMotions> Find(int frame) const;
+  /// All frames, as At().
+  Iterator begin() const { return {this, 0}; }
+  /// Behind the last one.
+  Iterator end() const { return {this, size()}; }
+
+  /// Appends a frame behind all others.
+  ///
+  /// @throw InputError if the file cannot be written.
+  void Append(FrameMotions frame);
+  /// Takes the place of the frame with the same index, which must be there.
+  ///
+  /// @throw InputError as Append().
+  void Replace(FrameMotions frame);
+
+ private:
+  static constexpr std::size_t kMemory = std::size_t{64} << 20;  // Speed.
+
+  /// Where a frame lies.
+  struct Place {
+    int frame = 0;                               ///< Index.
+    std::shared_ptr<const FrameMotions> memory;  ///< Null: in the file.
+    int spooled = 0;                             ///< Index there.
+  };
+
+  int IndexOf(int frame) const;
+  void Put(FrameMotions frame, Place* place);
+
+  std::size_t memory_;
+  std::size_t used_ = 0;  // Bytes of it.
+  std::vector<Place> places_;
+  SpooledList<FrameMotions> spooled_;
 };
 
+/// Motions of the nodes of a graph at the ends of the parts that they are of,
+/// see DeformationGraph::parts; where there are no parts, none.
+struct PartEnds {
+  std::vector<NodeMotion> first;  ///< In the first frame of the part.
+  std::vector<NodeMotion> last;   ///< In its last one.
+};
+
+/// Those of the graph of a history.
+///
+/// @throw InputError as MotionHistory::At().
+PartEnds EndsOfParts(const MotionHistory& history,
+                     const DeformationGraph& graph);
+
 /// Motions of all nodes of a graph in a frame that the history has; nodes that
-/// are not in use then have the nearest one that they had.
+/// are not in use then have the nearest one that they had. `ends`:
+/// EndsOfParts().
+///
+/// @throw InputError as MotionHistory::At().
 std::vector<NodeMotion> MotionsOfAll(const MotionHistory& history,
-                                     const DeformationGraph& graph, int frame);
-
-/// Writes `motions.bin`, little endian: 8 bytes "SFMOTN04" (the last two are
-/// the version), uint32 frames F, uint32 nodes N, then per frame int32 frame
-/// index, int32 tracked (0 or 1), uint32 ranges R, R x (uint32 first node,
-/// uint32 node behind the last one), for the M nodes of these M x 12 float32 (R
-/// row by row, then t), and M uint8 (1: seen); uint64 XXH3 of all bytes before
-/// it. `nodes`: of the graph.
-///
-/// @throw InputError if the file cannot be written.
-void WriteMotions(const std::string& path, const MotionHistory& history,
-                  int nodes);
-
-/// Reads what WriteMotions wrote; files of version 03, which have motions of
-/// all nodes in all frames, of 02, which do not say what was seen, and of 01,
-/// which have no checksum either. `nodes`: if not null, is set to the number of
-/// nodes of which the file tells.
-///
-/// @throw InputError on a missing, truncated, damaged or foreign file; also if
-///     frames or ranges do not ascend or a motion is not finite or no rotation.
-MotionHistory ReadMotions(const std::string& path, int* nodes = nullptr);
+                                     const DeformationGraph& graph,
+                                     const PartEnds& ends, int frame);
 
 }  // namespace splitfusion
 

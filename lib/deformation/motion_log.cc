@@ -19,11 +19,6 @@ namespace {
 /// Frames that go to the file together.
 constexpr std::size_t kBlockFrames = 16;  // Speed.
 
-std::size_t BytesInMemory(const FrameMotions& frame) {
-  return sizeof(frame) + frame.motions.size() * sizeof(NodeMotion) +
-         frame.seen.size();
-}
-
 /// In the file a motion is R column by column, then t; what was seen follows
 /// all of them.
 using SpooledMotion = std::array<double, 12>;
@@ -213,8 +208,7 @@ std::optional<FrameMotions> MotionLog::Find(int frame) const {
 
 MotionHistory MotionLog::All() const {
   MotionHistory history;
-  history.frames.reserve(size());
-  for (int i = 0; i < size(); ++i) history.frames.push_back(At(i));
+  for (int i = 0; i < size(); ++i) history.Append(At(i));
   return history;
 }
 
@@ -225,7 +219,7 @@ void MotionLog::Append(FrameMotions frame) {
     nodes_ever_ = nodes;
   }
   assert(frame.motions.size() == numbers_->size());
-  recent_bytes_ += BytesInMemory(frame);
+  recent_bytes_ += frame.bytes();
   recent_.push_back(std::move(frame));
   while (recent_bytes_ > memory_ && recent_.size() > kBlockFrames) Spool();
 }
@@ -238,7 +232,7 @@ void MotionLog::Grow(const NodeBirths& births, const NodeChange& change) {
     frame.seen.resize(frame.motions.size(), false);
     change.Apply(&frame.motions);
     change.Apply(&frame.seen);
-    recent_bytes_ += BytesInMemory(frame);
+    recent_bytes_ += frame.bytes();
   }
   const auto born = NumbersFrom(nodes_ever_, nodes_ever_ + births.size());
   std::vector<int> numbers = *numbers_;
@@ -291,7 +285,7 @@ void MotionLog::Spool() {
     const std::vector<char> bytes = BytesOfFrame(frame);
     block.frames.push_back({frame.frame, frame.tracked, !frame.seen.empty(),
                             file_->Append(bytes.data(), bytes.size())});
-    recent_bytes_ -= BytesInMemory(frame);
+    recent_bytes_ -= frame.bytes();
     recent_.pop_front();
   }
   spooled_ += static_cast<int>(block.frames.size());
@@ -328,7 +322,7 @@ MotionLog MotionLog::Part(const std::vector<char>& nodes,
     part.recent_.push_back({frame.frame, frame.tracked,
                             Chosen(frame.motions, nodes),
                             Chosen(frame.seen, nodes)});
-    part.recent_bytes_ += BytesInMemory(part.recent_.back());
+    part.recent_bytes_ += part.recent_.back().bytes();
   }
   part.nodes_ever_ = graph.size();
   part.numbers_ = NumbersFrom(0, part.nodes_ever_);

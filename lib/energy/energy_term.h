@@ -16,6 +16,7 @@
 namespace splitfusion {
 
 class OptionList;
+struct LinksInTime;
 struct LiveView;
 
 /// What a term may look at: one surface at one association.
@@ -54,6 +55,9 @@ struct EnergyInput {
   /// Values at which the unknowns of the term that is asked began the frame, as
   /// for a prior that lets them walk; null where that is not known.
   const std::vector<double>* begun = nullptr;
+  /// What ties the nodes of several frames together; null but where motions of
+  /// what was hidden are sought.
+  const LinksInTime* links = nullptr;
 };
 
 /// One term of the energy (SplitFusion Eq. 4).

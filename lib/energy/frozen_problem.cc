@@ -13,7 +13,7 @@
 namespace splitfusion {
 namespace {
 
-constexpr int kVersion = 2;                             // Format.
+constexpr int kVersion = 3;                             // Format.
 constexpr int kOldestVersion = 1;                       // Format.
 constexpr const char* kFormat = "splitfusion problem";  // Format.
 
@@ -147,6 +147,17 @@ void VisitCamera(File* file, PinholeCamera* camera) {
   file->Attribute("noise_reference", &camera->noise.reference);
 }
 
+template <typename File>
+void VisitLinks(File* file, std::optional<LinksInTime>* links) {
+  if (!file->Has("links", links->has_value())) return;
+  if (!links->has_value()) links->emplace();
+  file->Column("known/position", &(*links)->known_positions);
+  VisitMotions(file, "known", &(*links)->known_motions);
+  file->Column("links/edges", &(*links)->edges);
+  file->Column("links/triples", &(*links)->triples);
+  file->Column("links/differences", &(*links)->differences);
+}
+
 /// Everything but the energy, which is a text, and the edges.
 template <typename File>
 void Visit(File* file, FrozenProblem* problem, std::vector<Edge>* edges) {
@@ -180,6 +191,7 @@ void Visit(File* file, FrozenProblem* problem, std::vector<Edge>* edges) {
   VisitOptional(file, "before", &problem->before, motions);
   VisitOptional(file, "lost", &problem->lost, pairs);
   VisitOptional(file, "tracks", &problem->tracks, tracks);
+  VisitLinks(file, &problem->links);
   if (file->Has("unknowns", !problem->unknowns.empty())) {
     file->Column("unknowns/start", &problem->unknowns);
     file->Column("unknowns/start_gradient", &problem->start.by_unknowns);
@@ -256,6 +268,35 @@ class Check {
     }
   }
 
+  void Links(const LinksInTime& links) const {
+    const auto known = static_cast<int>(links.known_positions.size());
+    if (known != static_cast<int>(links.known_motions.size())) {
+      file_.Fail("known: expected a motion of each of " +
+                 std::to_string(known) + " known nodes");
+    }
+    if (links.triples.size() != links.differences.size()) {
+      file_.Fail("links/differences: expected those of each of " +
+                 std::to_string(links.triples.size()) + " triples");
+    }
+    const int nodes = problem_.graph.size() + known;
+    const auto check = [&](const char* name, const auto& tuples) {
+      for (const auto& tuple : tuples) {
+        auto sorted = tuple;
+        std::sort(sorted.begin(), sorted.end());
+        const bool differ =
+            std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+        if (differ && sorted.front() >= 0 && sorted.back() < nodes &&
+            IsNode(sorted.front())) {
+          continue;
+        }
+        file_.Fail(std::string(name) + ": expected different ones of " +
+                   std::to_string(nodes) + " nodes, one of them sought");
+      }
+    };
+    check("links/edges", links.edges);
+    check("links/triples", links.triples);
+  }
+
  private:
   int CountUnknowns() const {
     SurfaceProblem view = problem_.View();
@@ -282,6 +323,7 @@ void CheckContent(const Hdf5Reader& file, const FrozenProblem& problem,
   check.Skinning("correspondences", problem.correspondences);
   if (problem.lost) check.Skinning("lost", *problem.lost);
   if (problem.tracks) check.Skinning("tracks", *problem.tracks);
+  if (problem.links) check.Links(*problem.links);
 }
 
 /// The address of what is there.
@@ -322,6 +364,7 @@ SurfaceProblem FrozenProblem::View() const {
   view.tracks = AddressOf(tracks);
   view.surface = surface;
   view.unknowns = unknowns;
+  view.links = AddressOf(links);
   return view;
 }
 
@@ -338,6 +381,7 @@ FrozenProblem CopyProblem(const SurfaceProblem& problem,
   frozen.lost = CopyOf(problem.lost);
   frozen.tracks = CopyOf(problem.tracks);
   frozen.before = CopyOf(problem.before);
+  frozen.links = CopyOf(problem.links);
   frozen.unknowns = TermUnknowns(problem).StartValues();
   return frozen;
 }
@@ -375,7 +419,7 @@ FrozenProblem ReadFrozenProblem(const std::string& path,
   if (format != kFormat || version < kOldestVersion || version > kVersion) {
     file.Fail("is a '" + format + "' of version " + std::to_string(version) +
               ": expected a '" + kFormat + "' of version " +
-              std::to_string(kOldestVersion) + " or " +
+              std::to_string(kOldestVersion) + " to " +
               std::to_string(kVersion));
   }
   FrozenProblem problem;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "splitfusion/lib/energy/block_matrix.h"
+#include "splitfusion/lib/energy/links_in_time.h"
 #include "splitfusion/lib/energy/solver.h"
 
 namespace splitfusion {
@@ -37,7 +38,8 @@ struct FrozenProblem {
   std::vector<Correspondence> correspondences;  ///< As in SurfaceProblem ...
   std::optional<std::vector<Correspondence>> lost;  ///< ... likewise ...
   std::optional<std::vector<TrackedPoint>> tracks;  ///< ... likewise ...
-  std::optional<std::vector<NodeMotion>> before;    ///< ... likewise.
+  std::optional<std::vector<NodeMotion>> before;    ///< ... likewise ...
+  std::optional<LinksInTime> links;                 ///< ... likewise.
   std::vector<double> unknowns;  ///< Values at which all of them begin.
   ProblemStart start;            ///< As the run had it.
   std::string solver;            ///< The run's.

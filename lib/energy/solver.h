@@ -16,6 +16,7 @@
 
 namespace splitfusion {
 
+struct LinksInTime;
 struct LiveView;
 
 /// Options of the minimiser; names are Ceres' own.
@@ -94,6 +95,8 @@ struct SurfaceProblem {
   /// Where the terms' own unknowns begin, in order of the energy; empty: at
   /// their initial values.
   std::vector<double> unknowns = {};
+  /// As `live`.
+  const LinksInTime* links = nullptr;
 };
 
 /// A way to minimise energies. Minimize() may run on several threads at once.

@@ -24,6 +24,7 @@ std::vector<ProblemTerm> CollectResiduals(const SurfaceProblem& problem,
                     problem.live,   problem.before,          problem.anneal,
                     problem.lost,   problem.tracks,          problem.surface,
                     problem.context};
+  input.links = problem.links;
   const TermStates* states = problem.context.states;
   std::vector<ProblemTerm> terms;
   WarpedPointsCache cache(graph.size());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "splitfusion/lib/visibility/seen_triangles.h"
@@ -14,20 +15,20 @@ AnimatedSurface::AnimatedSurface(RecordedSurface surface)
     : surface_(std::move(surface)),
       index_(surface_.graph, surface_.neighbors_per_point),
       skinnings_(index_.Skin(surface_.mesh.vertices)),
-      stretched_from_(StretchedFrom(surface_.mesh)) {}
+      stretched_from_(StretchedFrom(surface_.mesh)),
+      ends_(EndsOfParts(surface_.motions, surface_.graph)) {}
 
 bool AnimatedSurface::HasMotions(int frame) const {
-  return surface_.motions.Find(frame) != nullptr;
+  return surface_.motions.Has(frame);
 }
 
 bool AnimatedSurface::Tracked(int frame) const {
-  const FrameMotions* motions = surface_.motions.Find(frame);
-  return motions != nullptr && motions->tracked;
+  const std::optional<FrameMotions> motions = surface_.motions.Find(frame);
+  return motions && motions->tracked;
 }
 
 int AnimatedSurface::FirstFrame() const {
-  const auto& frames = surface_.motions.frames;
-  return frames.empty() ? -1 : frames.front().frame;
+  return surface_.motions.empty() ? -1 : surface_.motions.frame(0);
 }
 
 bool AnimatedSurface::BeginsIn(int frame) const {
@@ -52,7 +53,7 @@ bool AnimatedSurface::EndsBetween(int before, int frame) const {
 
 WarpField AnimatedSurface::WarpAt(int frame) const {
   DeformationGraph graph = surface_.graph;
-  graph.motions = MotionsOfAll(surface_.motions, graph, frame);
+  graph.motions = MotionsOfAll(surface_.motions, graph, ends_, frame);
   return WarpField(graph);
 }
 

@@ -60,6 +60,7 @@ class AnimatedSurface {
   SkinningIndex index_;
   std::vector<Skinning> skinnings_;  // Of the vertices.
   double stretched_from_;            // Metres.
+  PartEnds ends_;
 };
 
 /// All surfaces of a run, by id.

@@ -11,6 +11,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/base/option_list.h"
 #include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "splitfusion/lib/sequence/calibration.h"
 
 namespace splitfusion {
@@ -176,12 +177,12 @@ void CheckMotions(const std::string& path, const RecordedSurface& surface,
                   int nodes) {
   const DeformationGraph& graph = surface.graph;
   if (graph.size() == 0) throw InputError(path + ": graph.json has no node");
-  if (nodes != graph.size() && !surface.motions.frames.empty()) {
+  if (nodes != graph.size() && !surface.motions.empty()) {
     throw InputError(path + ": motions.bin has " + std::to_string(nodes) +
                      " nodes: expected those of graph.json, " +
                      std::to_string(graph.size()));
   }
-  for (const FrameMotions& frame : surface.motions.frames) {
+  for (const FrameMotions& frame : surface.motions) {
     if (frame.ranges.empty()) continue;  // It has all.
     for (int i = 0; i < nodes; ++i) {
       if (!graph.IsInUse(i, frame.frame) || frame.IndexOf(i) >= 0) continue;

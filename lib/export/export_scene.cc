@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -138,11 +139,12 @@ void TakeMotions(const RecordedSurface& recorded, const PartOfSurface& part,
   moved.positions = surface->graph.positions;
   for (std::size_t place = 0; place < frames.size(); ++place) {
     const int index = frames[place].index;
-    const FrameMotions* motions = recorded.motions.Find(index);
-    if (motions == nullptr || index < part.first_frame ||
-        index >= part.end_frame || absences.count({recorded.id, index}) > 0) {
+    if (index < part.first_frame || index >= part.end_frame ||
+        absences.count({recorded.id, index}) > 0) {
       continue;
     }
+    const std::optional<FrameMotions> motions = recorded.motions.Find(index);
+    if (!motions) continue;
     const auto first = motions->motions.begin() + motions->IndexOf(part.begin);
     moved.motions.assign(first, first + (part.end - part.begin));
     ApplyRigidMotion(frames[place].space_from_camera, &moved);
@@ -239,7 +241,7 @@ ExportScene ReadExportScene(const std::string& run,
       }
       std::move(shown.begin(), shown.end(), std::back_inserter(scene.surfaces));
     }
-    surface = {};  // Its motions take much memory.
+    surface = RecordedSurface();  // Its motions take much memory.
   }
   return scene;
 }

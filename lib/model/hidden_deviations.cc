@@ -59,7 +59,7 @@ void AddDeviations(const PartMotions& motions,
   constexpr double kAxes = 3;  // Maths.
   for (int f = 0; f < motions.frames(); ++f) {
     for (int i = 0; i < motions.nodes(); ++i) {
-      if (!motions.states[f][i].hidden) continue;
+      if (motions.hidden[f][i] == 0) continue;
       const std::size_t at = static_cast<std::size_t>(f) * motions.nodes() + i;
       deviations->push_back({motions.first_node + i, motions.indices[f],
                              std::sqrt(squares[at] / kAxes)});
@@ -80,9 +80,10 @@ std::vector<HiddenDeviation> HiddenDeviations(
   refuted.resize(parts, false);
   for (std::size_t part = 0; part < parts; ++part) {
     if (refuted[part] != 0) continue;
-    const PartMotions motions =
-        MotionsOfPart(model, part, centers, world_from_camera);
-    if (!motions.HasHidden()) continue;
+    const PartFrames frames(part, centers, world_from_camera, model);
+    PartMotions motions = frames.motions();
+    if (!motions.HasHidden(0, motions.frames())) continue;
+    frames.Load(0, motions.frames(), &motions);
     AddDeviations(motions, MeanSquaredWays(options, motions), &deviations);
   }
   return deviations;

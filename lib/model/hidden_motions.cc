@@ -1,7 +1,5 @@
 #include "splitfusion/lib/model/hidden_motions.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <map>
 #include <vector>
@@ -28,25 +26,28 @@ void HiddenMotionOptions::List(OptionList* list) {
 
 std::vector<RefinedWindow> RefineHiddenMotions(
     const std::map<int, Rigid3d>& world_from_camera,
-    const HiddenMotionOptions& options, SurfaceModel* model) {
+    const HiddenMotionOptions& options, SurfaceModel* model,
+    const std::function<void(const WindowProblem&)>& solved) {
   const std::size_t parts = std::max<std::size_t>(1, model->graph.parts.size());
   const std::vector<Eigen::Vector3d> centers = CentersOf(*model);
-  std::vector<std::vector<RefinedWindow>> windows(parts);
   std::vector<char> refuted = WhichWereRefuted(model->graph);
   refuted.resize(parts, false);
-  tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t index) {
-    if (refuted[index] != 0) return;
-    PartMotions motions =
-        MotionsOfPart(*model, index, centers, world_from_camera);
-    windows[index] = RefinePart(options, {}, &motions);
-    StoreMotions(motions, world_from_camera, model);
-  });
   std::vector<RefinedWindow> all;
-  for (std::size_t index = 0; index < parts; ++index) {
-    for (RefinedWindow& window : windows[index]) {
-      window.part = static_cast<int>(index);
-      all.push_back(window);
-    }
+  for (std::size_t part = 0; part < parts; ++part) {
+    if (refuted[part] != 0) continue;
+    const PartFrames frames(part, centers, world_from_camera, *model);
+    PartMotions motions = frames.motions();
+    WindowHooks hooks;
+    hooks.begins = [&](int begin, int end) {
+      frames.Load(begin, end, &motions);
+    };
+    hooks.found = [&](int begin, int end) {
+      StoreMotions(motions, begin, end, world_from_camera, model);
+    };
+    hooks.solved = solved;
+    const std::vector<RefinedWindow> windows =
+        RefinePart(options, {}, &motions, hooks);
+    all.insert(all.end(), windows.begin(), windows.end());
   }
   return all;
 }

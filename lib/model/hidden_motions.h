@@ -1,10 +1,12 @@
 #ifndef SPLITFUSION_LIB_MODEL_HIDDEN_MOTIONS_H_
 #define SPLITFUSION_LIB_MODEL_HIDDEN_MOTIONS_H_
 
+#include <functional>
 #include <map>
 #include <vector>
 
 #include "splitfusion/lib/base/option_list.h"
+#include "splitfusion/lib/energy/links_in_time.h"
 #include "splitfusion/lib/geometry/rigid3.h"
 #include "splitfusion/lib/model/surface_model.h"
 
@@ -45,6 +47,13 @@ struct RefinedWindow {
   HiddenMotionCost final;    ///< Where it ended.
 };
 
+/// What is solved of a window, for other solvers.
+struct WindowProblem {
+  DeformationGraph graph;  ///< As LinksInTime says; where it starts.
+  LinksInTime links;       ///< Edges and differences in time.
+  RefinedWindow report;    ///< How it was solved.
+};
+
 /// Finds the motions of nodes in the frames in which they were not seen
 /// (FrameMotions::seen), between their first and their last sight; of the other
 /// nodes too in frames in which nothing of their part of the surface was seen,
@@ -66,12 +75,17 @@ struct RefinedWindow {
 /// over whole sequences.
 ///
 /// `world_from_camera`: by frame index, of all frames of the history. The one
-/// node of a rigid surface counts as if it were amid its mesh.
+/// node of a rigid surface counts as if it were amid its mesh. `solved`: is
+/// shown what was solved, window by window.
+/// Of the frames those of one window are in memory at a time.
+///
 /// @return by part, then in time; none where nothing is hidden. Does not depend
 ///     on the number of threads.
+/// @throw InputError if temporary files cannot be read or written.
 std::vector<RefinedWindow> RefineHiddenMotions(
     const std::map<int, Rigid3d>& world_from_camera,
-    const HiddenMotionOptions& options, SurfaceModel* model);
+    const HiddenMotionOptions& options, SurfaceModel* model,
+    const std::function<void(const WindowProblem&)>& solved = {});
 
 }  // namespace splitfusion
 

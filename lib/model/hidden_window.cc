@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <utility>
 
 namespace splitfusion {
 namespace {
@@ -53,7 +55,7 @@ class Window {
         numbers_(end - begin, std::vector<int>(motions->nodes(), -1)) {
     for (int f = begin; f < end; ++f) {
       for (int i = 0; i < motions_.nodes(); ++i) {
-        if (motions_.states[f][i].hidden) numbers_[f - begin][i] = unknowns_++;
+        if (motions_.hidden[f][i] != 0) numbers_[f - begin][i] = unknowns_++;
       }
     }
   }
@@ -71,9 +73,9 @@ class Window {
 
   /// Leaves its motions as they were.
   void GiveUp() {
-    ForEachUnknown([](int /*number*/, PartMotions::State& state) {
-      state.hidden = false;
-    });
+    for (int f = begin_; f < end_; ++f) {
+      std::fill(motions_.hidden[f].begin(), motions_.hidden[f].end(), false);
+    }
   }
 
   /// Factorises the matrix of the places; false if that fails.
@@ -147,6 +149,41 @@ class Window {
     }
   }
 
+  /// Of the places and rotations of now.
+  WindowProblem Problem() const {
+    WindowProblem problem;
+    problem.graph.positions.resize(unknowns_);
+    problem.graph.motions.resize(unknowns_);
+    problem.graph.neighbors.resize(unknowns_);
+    for (int f = begin_; f < end_; ++f) {
+      for (int i = 0; i < motions_.nodes(); ++i) {
+        if (Number(f, i) < 0) continue;
+        problem.graph.positions[Number(f, i)] = motions_.rest[i];
+        problem.graph.motions[Number(f, i)] = MotionOf(f, i);
+      }
+    }
+    std::map<std::pair<int, int>, int> known;
+    const auto number = [&](int f, int i) {
+      if (Number(f, i) >= 0) return Number(f, i);
+      const int next = unknowns_ + static_cast<int>(known.size());
+      const auto [found, is_new] = known.try_emplace({f, i}, next);
+      if (is_new) {
+        problem.links.known_positions.push_back(motions_.rest[i]);
+        problem.links.known_motions.push_back(MotionOf(f, i));
+      }
+      return found->second;
+    };
+    ForEachEdge([&](int f, int i, int j) {
+      problem.links.edges.push_back({number(f, i), number(f, j)});
+    });
+    ForEachDifference([&](int f, int i, const std::array<double, 3>& weights) {
+      problem.links.triples.push_back(
+          {number(f - 1, i), number(f, i), number(f + 1, i)});
+      problem.links.differences.push_back(weights);
+    });
+    return problem;
+  }
+
   HiddenMotionCost Cost() const {
     HiddenMotionCost cost;
     ForEachEdge([&](int f, int i, int j) {
@@ -176,6 +213,12 @@ class Window {
   std::array<int, 3> NumbersAt(int frame, int node) const {
     return {Number(frame - 1, node), Number(frame, node),
             Number(frame + 1, node)};
+  }
+
+  /// World from canonical.
+  NodeMotion MotionOf(int frame, int node) const {
+    const PartMotions::State& state = motions_.states[frame][node];
+    return {state.rotation, state.place - motions_.rest[node]};
   }
 
   const Eigen::Vector3d& Place(int frame, int node) const {
@@ -278,20 +321,28 @@ class Window {
   Eigen::CholmodSimplicialLLT<Eigen::SparseMatrix<double>> cholesky_;
 };
 
-/// Finds what is hidden in frames [begin, end); kept is what is before `kept`.
+/// Frames beside a window on which what is sought in it depends: of those of
+/// second differences one end is in it.
+constexpr int kBeside = 2;  // Maths.
+
+/// Finds what is hidden in frames [begin, end), which is something; kept is
+/// what is before `kept`.
 RefinedWindow Refine(int begin, int end, int kept,
                      const HiddenMotionOptions& options,
-                     const ResidualNoise& noise, PartMotions* motions) {
+                     const ResidualNoise& noise, const WindowHooks& hooks,
+                     PartMotions* motions) {
   constexpr int kMaxIterations = 30;  // Speed: ten are seldom needed.
   constexpr double kSettled = 1e-4;   // Maths. Metres.
   Window window(motions, begin, end, options.smoothness, noise);
   RefinedWindow report;
+  report.part = motions->part;
   report.first_frame = motions->indices[begin];
   report.last_frame = motions->indices[end - 1];
   report.hidden = window.unknowns();
   report.kept = window.UnknownsBefore(kept);
-  if (report.hidden == 0) return report;
   report.initial = window.Cost();
+  WindowProblem problem;
+  if (hooks.solved) problem = window.Problem();
   report.solved = window.Factorize();
   if (report.solved) {
     double way = 0;
@@ -303,6 +354,10 @@ RefinedWindow Refine(int begin, int end, int kept,
     window.GiveUp();
   }
   report.final = window.Cost();
+  if (hooks.solved) {
+    problem.report = report;
+    hooks.solved(problem);
+  }
   return report;
 }
 
@@ -310,20 +365,21 @@ RefinedWindow Refine(int begin, int end, int kept,
 
 ResidualNoise NoiseOfSeen(double smoothness, const PartMotions& motions) {
   const auto& states = motions.states;
+  const auto& hidden = motions.hidden;
   double edges = 0, differences = 0;
   std::int64_t edge_count = 0, difference_count = 0;
   for (int f = 0; f < motions.frames(); ++f) {
     for (int i = 0; i < motions.nodes(); ++i) {
-      const PartMotions::State& now = states[f][i];
-      if (now.hidden) continue;
+      if (hidden[f][i] != 0) continue;
       for (const int j : motions.neighbors[i]) {
-        if (states[f][j].hidden) continue;
-        edges += (now.place - states[f][j].place - TurnedEdge(motions, f, i, j))
+        if (hidden[f][j] != 0) continue;
+        edges += (states[f][i].place - states[f][j].place -
+                  TurnedEdge(motions, f, i, j))
                      .squaredNorm();
         edge_count += 3;
       }
       if (f == 0 || f + 1 == motions.frames()) continue;
-      if (states[f - 1][i].hidden || states[f + 1][i].hidden) continue;
+      if (hidden[f - 1][i] != 0 || hidden[f + 1][i] != 0) continue;
       differences +=
           smoothness *
           DifferenceInTime(motions, f, i, DifferenceWeights(motions, f))
@@ -340,15 +396,22 @@ ResidualNoise NoiseOfSeen(double smoothness, const PartMotions& motions) {
 
 std::vector<RefinedWindow> RefinePart(const HiddenMotionOptions& options,
                                       const ResidualNoise& noise,
-                                      PartMotions* motions) {
+                                      PartMotions* motions,
+                                      const WindowHooks& hooks) {
   std::vector<RefinedWindow> windows;
   for (int begin = 0; begin < motions->frames();) {
     const int end = std::min(begin + options.window, motions->frames());
     const bool is_last = end == motions->frames();
     const int kept = is_last ? end : begin + options.window / 2;
-    const RefinedWindow window =
-        Refine(begin, end, kept, options, noise, motions);
-    if (window.hidden > 0) windows.push_back(window);
+    if (motions->HasHidden(begin, end)) {
+      if (hooks.begins) {
+        hooks.begins(std::max(0, begin - kBeside),
+                     std::min(end + kBeside, motions->frames()));
+      }
+      windows.push_back(
+          Refine(begin, end, kept, options, noise, hooks, motions));
+      if (hooks.found) hooks.found(begin, kept);
+    }
     if (is_last) break;
     begin = kept;
   }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "splitfusion/lib/base/normal_noise.h"
@@ -33,12 +34,23 @@ struct ResidualNoise {
 /// depends on was seen, root mean square of a number; 0 where nothing was.
 ResidualNoise NoiseOfSeen(double smoothness, const PartMotions& motions);
 
+/// What is told of the windows of a part, each of frames [begin, end).
+struct WindowHooks {
+  /// One will be looked at; asks for states of no others before it ends.
+  std::function<void(int begin, int end)> begins;
+  /// What was sought in these is found: no later window seeks it again.
+  std::function<void(int begin, int end)> found;
+  /// One was solved.
+  std::function<void(const WindowProblem&)> solved;
+};
+
 /// Finds the hidden motions of a part, a window of frames after the other, as
 /// RefineHiddenMotions() says, of residuals to which `noise` is added. Windows
-/// in which nothing is hidden are left out of the report.
+/// in which nothing is hidden are left out.
 std::vector<RefinedWindow> RefinePart(const HiddenMotionOptions& options,
                                       const ResidualNoise& noise,
-                                      PartMotions* motions);
+                                      PartMotions* motions,
+                                      const WindowHooks& hooks = {});
 
 }  // namespace splitfusion
 

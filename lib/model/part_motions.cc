@@ -1,7 +1,7 @@
 #include "splitfusion/lib/model/part_motions.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 namespace splitfusion {
 namespace {
@@ -17,12 +17,13 @@ int EndNode(const DeformationGraph& graph, std::size_t index) {
                                         : graph.size();
 }
 
-PartMotions MotionsInWorld(const SurfaceModel& model, std::size_t index,
-                           const std::vector<Eigen::Vector3d>& centers,
-                           const std::map<int, Rigid3d>& world_from_camera) {
+/// A part with all that was not seen for hidden.
+PartMotions SightsOf(const SurfaceModel& model, std::size_t index,
+                     const std::vector<Eigen::Vector3d>& centers) {
   const DeformationGraph& graph = model.graph;
   const ModelPart part = PartAt(graph, index);
   PartMotions motions;
+  motions.part = static_cast<int>(index);
   motions.first_node = part.node;
   const int end = EndNode(graph, index);
   for (int i = part.node; i < end; ++i) {
@@ -30,40 +31,30 @@ PartMotions MotionsInWorld(const SurfaceModel& model, std::size_t index,
     motions.neighbors.push_back(graph.neighbors[i]);
     for (int& j : motions.neighbors.back()) j -= part.node;
   }
-  for (const FrameMotions& frame : model.history.frames) {
-    if (frame.frame < part.first_frame || frame.frame >= part.end_frame) {
-      continue;
-    }
-    const Rigid3d& pose = world_from_camera.at(frame.frame);
-    motions.indices.push_back(frame.frame);
-    auto& states = motions.states.emplace_back();
-    const int ahead = part.node - frame.IndexOf(part.node);
-    for (int i = part.node; i < end; ++i) {
-      const NodeMotion& motion = frame.motions[i - ahead];
-      states.push_back(
-          {pose * ApplyNode(graph.positions[i], motion, centers[i]),
-           pose.linear() * motion.rotation, !frame.Saw(i)});
-    }
+  for (int f = 0; f < model.history.size(); ++f) {
+    const int number = model.history.frame(f);
+    if (number < part.first_frame || number >= part.end_frame) continue;
+    const FrameMotions frame = model.history.At(f);
+    motions.indices.push_back(number);
+    auto& hidden = motions.hidden.emplace_back();
+    for (int i = part.node; i < end; ++i) hidden.push_back(!frame.Saw(i));
   }
+  motions.states.resize(motions.indices.size());
   return motions;
 }
 
 /// Before the first and after the last frame in which anything of the part was
 /// seen nothing is sought.
 void LeaveEndsAlone(PartMotions* motions) {
-  const auto sees = [](const std::vector<PartMotions::State>& states) {
-    return std::any_of(states.begin(), states.end(),
-                       [](const PartMotions::State& s) { return !s.hidden; });
-  };
   const auto leave = [&](auto begin, auto end) {
     for (auto frame = begin; frame != end; ++frame) {
-      if (sees(*frame)) return;
-      for (PartMotions::State& state : *frame) state.hidden = false;
+      if (std::count(frame->begin(), frame->end(), false) > 0) return;
+      std::fill(frame->begin(), frame->end(), false);
     }
   };
   // Of a part that was never seen the first pass leaves nothing to seek.
-  leave(motions->states.begin(), motions->states.end());
-  leave(motions->states.rbegin(), motions->states.rend());
+  leave(motions->hidden.begin(), motions->hidden.end());
+  leave(motions->hidden.rbegin(), motions->hidden.rend());
 }
 
 /// Before its first and after its last sight a node stays where tracking had
@@ -74,7 +65,7 @@ void LeaveOneSided(PartMotions* motions) {
   std::vector<char> sees(motions->frames(), false);
   for (int f = 0; f < motions->frames(); ++f) {
     for (int i = 0; i < motions->nodes(); ++i) {
-      if (motions->states[f][i].hidden) continue;
+      if (motions->hidden[f][i] != 0) continue;
       first[i] = std::min(first[i], f);
       last[i] = f;
       sees[f] = true;
@@ -83,51 +74,19 @@ void LeaveOneSided(PartMotions* motions) {
   for (int f = 0; f < motions->frames(); ++f) {
     for (int i = 0; i < motions->nodes(); ++i) {
       if (sees[f] != 0 && (f < first[i] || f > last[i])) {
-        motions->states[f][i].hidden = false;
+        motions->hidden[f][i] = false;
       }
-    }
-  }
-}
-
-/// Spreads the way and the turn with which a node comes into sight again over
-/// the frames in which it was hidden: where its motion begins to be sought, and
-/// where it is taken to be beyond a window.
-void SpreadReturns(PartMotions* motions) {
-  for (int i = 0; i < motions->nodes(); ++i) {
-    int last = -1;  // In which it was known.
-    for (int f = 0; f < motions->frames(); ++f) {
-      const PartMotions::State& now = motions->states[f][i];
-      if (now.hidden) continue;
-      if (last >= 0 && f > last + 1) {
-        const PartMotions::State& before = motions->states[f - 1][i];
-        const Eigen::Vector3d way = now.place - before.place;
-        const Eigen::AngleAxisd turn(now.rotation *
-                                     before.rotation.transpose());
-        const double span = motions->indices[f] - motions->indices[last];
-        for (int k = last + 1; k < f; ++k) {
-          const double share =
-              (motions->indices[k] - motions->indices[last]) / span;
-          PartMotions::State& state = motions->states[k][i];
-          state.place += share * way;
-          state.rotation =
-              Eigen::AngleAxisd(share * turn.angle(), turn.axis()) *
-              state.rotation;
-        }
-      }
-      last = f;
     }
   }
 }
 
 }  // namespace
 
-bool PartMotions::HasHidden() const {
-  for (const std::vector<State>& frame : states) {
-    for (const State& state : frame) {
-      if (state.hidden) return true;
-    }
-  }
-  return false;
+bool PartMotions::HasHidden(int begin, int end) const {
+  return std::any_of(hidden.begin() + begin, hidden.begin() + end,
+                     [](const std::vector<char>& frame) {
+                       return std::count(frame.begin(), frame.end(), true) > 0;
+                     });
 }
 
 std::vector<Eigen::Vector3d> CentersOf(const SurfaceModel& model) {
@@ -139,30 +98,101 @@ std::vector<Eigen::Vector3d> CentersOf(const SurfaceModel& model) {
   return centers;
 }
 
-PartMotions MotionsOfPart(const SurfaceModel& model, std::size_t part,
-                          const std::vector<Eigen::Vector3d>& centers,
-                          const std::map<int, Rigid3d>& world_from_camera) {
-  PartMotions motions = MotionsInWorld(model, part, centers, world_from_camera);
-  LeaveOneSided(&motions);
-  LeaveEndsAlone(&motions);
-  SpreadReturns(&motions);
-  return motions;
+PartFrames::PartFrames(std::size_t part,
+                       const std::vector<Eigen::Vector3d>& centers,
+                       const std::map<int, Rigid3d>& world_from_camera,
+                       const SurfaceModel& model)
+    : centers_(centers),
+      world_from_camera_(world_from_camera),
+      model_(model),
+      motions_(SightsOf(model, part, centers)) {
+  LeaveOneSided(&motions_);
+  LeaveEndsAlone(&motions_);
+  if (motions_.HasHidden(0, motions_.frames())) FindStretches();
 }
 
-void StoreMotions(const PartMotions& motions,
+/// As tracking had it.
+std::vector<PartMotions::State> PartFrames::Tracked(int f) const {
+  const FrameMotions frame = *model_.history.Find(motions_.indices[f]);
+  const Rigid3d& pose = world_from_camera_.at(frame.frame);
+  const int begin = motions_.first_node;
+  const int first = frame.IndexOf(begin);
+  std::vector<PartMotions::State> states;
+  states.reserve(motions_.nodes());
+  for (int i = 0; i < motions_.nodes(); ++i) {
+    const NodeMotion& motion = frame.motions[first + i];
+    states.push_back({pose * ApplyNode(model_.graph.positions[begin + i],
+                                       motion, centers_[begin + i]),
+                      pose.linear() * motion.rotation});
+  }
+  return states;
+}
+
+/// In a frame in which a node comes into sight again, it may be off: how far,
+/// beside where it was tracked in the frame before.
+void PartFrames::FindStretches() {
+  stretches_.resize(motions_.nodes());
+  std::vector<int> last(motions_.nodes(), -1);  // In which it was known.
+  std::vector<PartMotions::State> before, now;
+  for (int f = 0; f < motions_.frames(); ++f) {
+    now = Tracked(f);
+    for (int i = 0; i < motions_.nodes(); ++i) {
+      if (motions_.hidden[f][i] != 0) continue;
+      if (last[i] >= 0 && f > last[i] + 1) {
+        const Eigen::AngleAxisd turn(now[i].rotation *
+                                     before[i].rotation.transpose());
+        stretches_[i].push_back(
+            {last[i], f, now[i].place - before[i].place, turn});
+      }
+      last[i] = f;
+    }
+    before.swap(now);
+  }
+}
+
+/// Takes the share of its return that falls to the time since it was known.
+void PartFrames::Spread(int f, std::vector<PartMotions::State>* states) const {
+  const std::vector<int>& indices = motions_.indices;
+  for (int i = 0; i < motions_.nodes(); ++i) {
+    if (motions_.hidden[f][i] == 0) continue;
+    const std::vector<Stretch>& own = stretches_[i];
+    const auto found =
+        std::upper_bound(own.begin(), own.end(), f,
+                         [](int at, const Stretch& s) { return at < s.next; });
+    if (found == own.end() || f <= found->last) continue;
+    const double span = indices[found->next] - indices[found->last];
+    const double share = (indices[f] - indices[found->last]) / span;
+    PartMotions::State& state = (*states)[i];
+    state.place += share * found->way;
+    state.rotation =
+        Eigen::AngleAxisd(share * found->turn.angle(), found->turn.axis()) *
+        state.rotation;
+  }
+}
+
+void PartFrames::Load(int begin, int end, PartMotions* motions) const {
+  for (int f = begin - 1; f >= 0 && !motions->states[f].empty(); --f) {
+    motions->states[f] = {};
+  }
+  for (int f = begin; f < end; ++f) {
+    if (!motions->states[f].empty()) continue;
+    motions->states[f] = Tracked(f);
+    Spread(f, &motions->states[f]);
+  }
+}
+
+void StoreMotions(const PartMotions& motions, int begin, int end,
                   const std::map<int, Rigid3d>& world_from_camera,
                   SurfaceModel* model) {
-  std::size_t f = 0;
-  for (FrameMotions& frame : model->history.frames) {
-    if (f == motions.indices.size() || frame.frame != motions.indices[f]) {
-      continue;
-    }
+  for (int f = begin; f < end; ++f) {
+    if (!motions.HasHidden(f, f + 1)) continue;
+    FrameMotions frame = *model->history.Find(motions.indices[f]);
     const Rigid3d camera_from_world =
         world_from_camera.at(frame.frame).inverse();
     const int first = frame.IndexOf(motions.first_node);
     for (int i = 0; i < motions.nodes(); ++i) {
+      if (motions.hidden[f][i] == 0) continue;
       const PartMotions::State& state = motions.states[f][i];
-      if (!state.hidden) continue;
       const Eigen::Vector3d& g = model->graph.positions[motions.first_node + i];
       NodeMotion& motion = frame.motions[first + i];
       motion.rotation =
@@ -170,7 +200,7 @@ void StoreMotions(const PartMotions& motions,
       motion.translation = camera_from_world * state.place - g -
                            motion.rotation * (motions.rest[i] - g);
     }
-    ++f;
+    model->history.Replace(std::move(frame));
   }
 }
 

@@ -12,22 +12,17 @@ void RetiredModels::Add(TriangleMesh mesh, DeformationGraph graph,
   models_.Add({std::move(mesh), std::move(graph), std::move(history)});
 }
 
-RetiredModels::Retired RetiredModels::Load(int i) const {
+TrackedModel RetiredModels::At(int i) const {
   return models_.At(i, {{}, {}, MotionLog(file_)});
-}
-
-SurfaceModel RetiredModels::At(int i) const {
-  Retired model = Load(i);
-  return {std::move(model.mesh), std::move(model.graph), model.history.All()};
 }
 
 template <typename Archive>
 void RetiredModels::Serialize(Archive* archive) {
   const std::uint64_t count = archive->Count(size(), 1);
-  if constexpr (Archive::kReads) models_ = SpooledList<Retired>(file_);
+  if constexpr (Archive::kReads) models_ = SpooledList<TrackedModel>(file_);
   for (std::uint64_t i = 0; i < count; ++i) {
-    Retired model{{}, {}, MotionLog(file_)};
-    if constexpr (!Archive::kReads) model = Load(static_cast<int>(i));
+    TrackedModel model{{}, {}, MotionLog(file_)};
+    if constexpr (!Archive::kReads) model = At(static_cast<int>(i));
     // With its motions: a checkpoint has no other file.
     (*archive)(model.mesh, model.graph, model.history);
     if constexpr (Archive::kReads) {

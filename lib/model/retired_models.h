@@ -32,31 +32,15 @@ class RetiredModels {
   /// The model i, 0..size() - 1.
   ///
   /// @throw InputError if the file cannot be read.
-  SurfaceModel At(int i) const;
+  TrackedModel At(int i) const;
 
   /// Saves or restores them, see lib/base/archive.h.
   template <typename Archive>
   void Serialize(Archive* archive);
 
  private:
-  /// One of them.
-  struct Retired {
-    TriangleMesh mesh;       ///< Canonical frame, metres.
-    DeformationGraph graph;  ///< At its last motions.
-    MotionLog history;       ///< In the file already.
-
-    /// Saves or restores it, but for the motions in the file.
-    template <typename Archive>
-    void Serialize(Archive* archive) {
-      (*archive)(mesh, graph);
-      history.SerializeIndex(archive);
-    }
-  };
-
-  Retired Load(int i) const;
-
   std::shared_ptr<SpoolFile> file_;
-  SpooledList<Retired> models_;
+  SpooledList<TrackedModel> models_;  // Their motions are in the file already.
 };
 
 }  // namespace splitfusion

@@ -133,11 +133,11 @@ bool Surface::Reanchor(const LiveView& live) {
 }
 
 SurfaceModel Surface::Model() const {
-  std::vector<SurfaceModel> models;
+  std::vector<TrackedModel> models;
   for (int i = 0; i < retired_.size(); ++i) models.push_back(retired_.At(i));
   // One that has no frame yet has nothing to show.
   if (!history_.empty() || models.empty()) {
-    models.push_back({mesh_, graph_, history_.All()});
+    models.push_back({mesh_, graph_, history_});
   }
   return JoinModels(std::move(models));
 }

@@ -14,7 +14,7 @@ constexpr double kGap = 1;  // Layout.
 using Box = Eigen::AlignedBox3d;
 
 /// Of a model's nodes and vertices, canonical frame, metres.
-Box ExtentOf(const SurfaceModel& model) {
+Box ExtentOf(const TrackedModel& model) {
   Box box;
   for (const Eigen::Vector3d& g : model.graph.positions) box.extend(g);
   for (const Eigen::Vector3f& v : model.mesh.vertices) {
@@ -26,10 +26,10 @@ Box ExtentOf(const SurfaceModel& model) {
 /// Where canonical frames are moved so that they lie in the cells of a cube,
 /// the first one where it is: in a row thousands of them would reach so far
 /// that single precision rounds to millimetres.
-std::vector<Eigen::Vector3d> ShiftsOf(const std::vector<SurfaceModel>& models) {
+std::vector<Eigen::Vector3d> ShiftsOf(const std::vector<TrackedModel>& models) {
   std::vector<Box> boxes;
   double width = 0;
-  for (const SurfaceModel& model : models) {
+  for (const TrackedModel& model : models) {
     boxes.push_back(ExtentOf(model));
     width = std::max(width, boxes.back().sizes().maxCoeff());
   }
@@ -60,13 +60,14 @@ void AppendMesh(const TriangleMesh& mesh, const Eigen::Vector3d& shift,
   }
 }
 
-void AppendGraph(const SurfaceModel& model, const Eigen::Vector3d& shift,
+void AppendGraph(const TrackedModel& model, const Eigen::Vector3d& shift,
                  DeformationGraph* joined) {
   const DeformationGraph& graph = model.graph;
   const int first_node = joined->size();
-  const int first_frame = model.history.frames.front().frame;
+  const MotionLog& frames = model.history;
+  const int first_frame = frames.frame(0);
   joined->parts.push_back(
-      {first_node, first_frame, model.history.frames.back().frame + 1});
+      {first_node, first_frame, frames.frame(frames.size() - 1) + 1});
   joined->node_spacing = std::max(joined->node_spacing, graph.node_spacing);
   for (int i = 0; i < graph.size(); ++i) {
     joined->positions.push_back(graph.positions[i] + shift);
@@ -96,11 +97,11 @@ void AppendMotions(const FrameMotions& own, int first,
 }
 
 /// All frames of some models, and whether the surface was tracked in them.
-std::map<int, bool> FramesOf(const std::vector<SurfaceModel>& models) {
+std::map<int, bool> FramesOf(const std::vector<TrackedModel>& models) {
   std::map<int, bool> frames;
-  for (const SurfaceModel& model : models) {
-    for (const FrameMotions& frame : model.history.frames) {
-      frames[frame.frame] = frame.tracked;
+  for (const TrackedModel& model : models) {
+    for (int i = 0; i < model.history.size(); ++i) {
+      frames[model.history.frame(i)] = model.history.tracked(i);
     }
   }
   return frames;
@@ -108,8 +109,11 @@ std::map<int, bool> FramesOf(const std::vector<SurfaceModel>& models) {
 
 }  // namespace
 
-SurfaceModel JoinModels(std::vector<SurfaceModel> models) {
-  if (models.size() == 1) return std::move(models.front());
+SurfaceModel JoinModels(std::vector<TrackedModel> models) {
+  if (models.size() == 1) {
+    TrackedModel& only = models.front();
+    return {std::move(only.mesh), std::move(only.graph), only.history.All()};
+  }
   SurfaceModel joined;
   const std::vector<Eigen::Vector3d> shifts = ShiftsOf(models);
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -119,18 +123,17 @@ SurfaceModel JoinModels(std::vector<SurfaceModel> models) {
   }
   joined.graph.parts.back().end_frame = ModelPart::kNoEnd;
   joined.graph.motions.resize(joined.graph.size());
-  std::vector<std::size_t> next(models.size(), 0);
+  std::vector<int> next(models.size(), 0);
   for (const auto& [index, tracked] : FramesOf(models)) {
     FrameMotions all{index, tracked, {}, {}, {}};
     for (std::size_t i = 0; i < models.size(); ++i) {
-      std::vector<FrameMotions>& own = models[i].history.frames;
-      if (next[i] == own.size() || own[next[i]].frame != index) continue;
-      // Not all of it is in memory twice.
-      const FrameMotions taken = std::move(own[next[i]++]);
-      AppendMotions(taken, joined.graph.parts[i].node, shifts[i], &all);
+      const MotionLog& own = models[i].history;
+      if (next[i] == own.size() || own.frame(next[i]) != index) continue;
+      AppendMotions(own.At(next[i]++), joined.graph.parts[i].node, shifts[i],
+                    &all);
     }
     all.SpreadTo(&joined.graph.motions);
-    joined.history.frames.push_back(std::move(all));
+    joined.history.Append(std::move(all));
   }
   return joined;
 }

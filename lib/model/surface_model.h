@@ -6,6 +6,7 @@
 
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/motion_log.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
 namespace splitfusion {
@@ -17,6 +18,21 @@ struct SurfaceModel {
   MotionHistory history;   ///< Motions of all its frames.
 };
 
+/// What there is of a surface, or of a part of one, while it is tracked.
+struct TrackedModel {
+  TriangleMesh mesh;       ///< Canonical frame, metres.
+  DeformationGraph graph;  ///< Its motions are the last ones.
+  MotionLog history;       ///< Motions of all its frames, one at least.
+
+  /// Saves or restores it, but for the motions in the file of a complete log,
+  /// see MotionLog::SerializeIndex().
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(mesh, graph);
+    history.SerializeIndex(archive);
+  }
+};
+
 /// What is kept of every surface, by id.
 using SurfaceModels = std::map<int, SurfaceModel>;
 
@@ -25,8 +41,11 @@ using SurfaceModels = std::map<int, SurfaceModel>;
 /// frames of their histories, see DeformationGraph::parts. Their canonical
 /// frames are laid apart, a metre or more, in the cells of a cube, so that Eq.
 /// 3 finds the nodes of one part only. In other frames their nodes have no
-/// motion; those of the graph are the last ones that they had.
-SurfaceModel JoinModels(std::vector<SurfaceModel> models);
+/// motion; those of the graph are the last ones that they had. A single model
+/// stays as it is. Not all frames are in memory at a time.
+///
+/// @throw InputError if temporary files cannot be read or written.
+SurfaceModel JoinModels(std::vector<TrackedModel> models);
 
 }  // namespace splitfusion
 

@@ -36,9 +36,8 @@ struct SceneSurface {
   const RecordedSurface& recorded;
   SmallerMesh smaller;
   std::vector<Skinning> skinning;  // Of the vertices of `smaller`.
-  /// In the frames of the scene, and where these are in it.
-  std::vector<const FrameMotions*> motions;
-  std::vector<int> places;
+  std::vector<int> shown;   // Frames of the scene that it has motions in,
+  std::vector<int> places;  // and where these are in the scene.
 };
 
 template <typename Points>
@@ -137,13 +136,16 @@ Values Edges(const DeformationGraph& graph) {
 /// component, frame, node.
 Values Motions(const SceneSurface& surface) {
   const std::size_t nodes = surface.recorded.graph.positions.size();
-  const std::size_t count = nodes * surface.motions.size();
+  const std::size_t count = nodes * surface.shown.size();
   Values values(7 * count);
   std::vector<Eigen::Vector4d> before(nodes, Eigen::Vector4d::Zero());
   std::size_t at = 0;
-  for (const FrameMotions* frame : surface.motions) {
-    const std::vector<NodeMotion> motions = MotionsOfAll(
-        surface.recorded.motions, surface.recorded.graph, frame->frame);
+  const DeformationGraph& graph = surface.recorded.graph;
+  const MotionHistory& history = surface.recorded.motions;
+  const PartEnds ends = EndsOfParts(history, graph);
+  for (const int frame : surface.shown) {
+    const std::vector<NodeMotion> motions =
+        MotionsOfAll(history, graph, ends, frame);
     for (std::size_t n = 0; n < nodes; ++n, ++at) {
       Eigen::Vector4d turn = Eigen::Quaterniond(motions[n].rotation).coeffs();
       // Of the two that are the same rotation, the one like the last.
@@ -216,10 +218,11 @@ SceneSurface MakeSurface(const RecordedSurface& recorded,
       recorded, SimplifiedMesh(recorded.mesh, kVertices), {}, {}, {}};
   surface.skinning = SkinningIndex(recorded.graph, recorded.neighbors_per_point)
                          .Skin(surface.smaller.mesh.vertices);
-  for (const FrameMotions& motions : recorded.motions.frames) {
-    const int place = PlaceOf(motions.frame, frames);
+  for (int i = 0; i < recorded.motions.size(); ++i) {
+    const int frame = recorded.motions.frame(i);
+    const int place = PlaceOf(frame, frames);
     if (place < 0) continue;
-    surface.motions.push_back(&motions);
+    surface.shown.push_back(frame);
     surface.places.push_back(place);
   }
   return surface;

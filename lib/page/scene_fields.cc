@@ -60,7 +60,7 @@ void AddDeviations(const TriangleMesh& mesh, const std::vector<double>& sigma,
 
 NodeField Uncertainty(const RunPaths& paths, const RecordedSurface& surface) {
   NodeField field{"sigma", "uncertainty", 0.02, true, {}, {}};
-  for (const FrameMotions& motions : surface.motions.frames) {
+  for (const FrameMotions& motions : surface.motions) {
     const std::string path = paths.Uncertainty(motions.frame, surface.id);
     if (!std::filesystem::exists(path)) continue;
     PlyProperties extra;

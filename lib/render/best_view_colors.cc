@@ -101,7 +101,7 @@ int BestViewColors::NodeOf(std::size_t vertex) const {
 
 void BestViewColors::Place(int frame) {
   motions_ = model_.history.Find(frame);
-  if (motions_ == nullptr) return;
+  if (!motions_) return;
   motions_->SpreadTo(&graph_.motions);
   const WarpField warp(graph_);
   ForEachVertex(placed_.size(), [&](std::size_t i) {
@@ -113,7 +113,7 @@ void BestViewColors::Place(int frame) {
 
 int BestViewColors::Draw(const PinholeCamera& camera, int first,
                          Raster* raster) const {
-  if (motions_ == nullptr) return 0;
+  if (!motions_) return 0;
   const std::vector<Eigen::Vector3i> triangles =
       graph_.rigid()
           ? model_.mesh.triangles
@@ -124,7 +124,7 @@ int BestViewColors::Draw(const PinholeCamera& camera, int first,
 }
 
 void BestViewColors::Add(const LiveView& live) {
-  if (motions_ == nullptr) return;
+  if (!motions_) return;
   const WarpField warp(graph_);
   // Since the frame before, frames.
   const auto passed =

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "splitfusion/lib/deformation/skinning.h"
@@ -56,7 +57,9 @@ class BestViewColors {
   /// Id of the surface.
   int surface() const { return surface_; }
   /// Motions of the frame in hand; null: the surface has none for it.
-  const FrameMotions* motions() const { return motions_; }
+  const FrameMotions* motions() const {
+    return motions_ ? &*motions_ : nullptr;
+  }
   /// Vertices as Place() left them, camera frame, metres; of those that are not
   /// in use it says nothing.
   const std::vector<Eigen::Vector3f>& placed() const { return placed_; }
@@ -87,11 +90,11 @@ class BestViewColors {
   const SurfaceModel& model_;
   std::vector<Skinning> skinning_;
   std::vector<Vertex> vertices_;
-  const FrameMotions* motions_ = nullptr;  // Of the frame in hand.
-  DeformationGraph graph_;                 // With these.
-  std::vector<Eigen::Vector3f> placed_;    // Camera frame, metres.
-  std::vector<char> in_use_;               // By vertex, in the frame in hand.
-  int last_frame_ = -1;                    // Of Vertex::pixel; -1: none.
+  std::optional<FrameMotions> motions_;  // Of the frame in hand.
+  DeformationGraph graph_;               // With these.
+  std::vector<Eigen::Vector3f> placed_;  // Camera frame, metres.
+  std::vector<char> in_use_;             // By vertex, in the frame in hand.
+  int last_frame_ = -1;                  // Of Vertex::pixel; -1: none.
 };
 
 }  // namespace splitfusion

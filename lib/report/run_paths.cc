@@ -46,6 +46,11 @@ std::string RunPaths::Problem(int frame, int surface, bool first) const {
                (first ? "_first.h5" : ".h5"));
 }
 
+std::string RunPaths::HiddenProblem(int frame, int surface, int part) const {
+  return Below("problems/" + FrameName(frame) +
+               cv::format("_%03d_hidden_%d.h5", surface, part));
+}
+
 std::string RunPaths::Uncertainty(int frame, int surface) const {
   return Below("uncertainty/" + FrameName(frame) +
                cv::format("_%03d.ply", surface));

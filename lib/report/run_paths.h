@@ -40,6 +40,9 @@ class RunPaths {
   /// RUN/problems/FRAME_NNN.h5, the last solve of surface NNN in a frame; or
   /// FRAME_NNN_first.h5, the first one of more than one node.
   std::string Problem(int frame, int surface, bool first) const;
+  /// Frozen window of hidden motions that begins in a frame, of a part of a
+  /// surface.
+  std::string HiddenProblem(int frame, int surface, int part) const;
   /// RUN/uncertainty/FRAME_NNN.ply, surface NNN in a frame.
   std::string Uncertainty(int frame, int surface) const;
   /// RUN/solver/FRAME.txt

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/visibility/seen_triangles.h"
 
@@ -12,11 +13,11 @@ namespace {
 
 /// The final mesh under the motions of one frame, camera frame; `whole`: with
 /// what was seen only later.
-TriangleMesh WarpMesh(const SurfaceModel& model,
+TriangleMesh WarpMesh(const SurfaceModel& model, const PartEnds& ends,
                       const std::vector<Skinning>& skinning, int frame,
                       bool whole) {
   DeformationGraph graph = model.graph;
-  graph.motions = MotionsOfAll(model.history, graph, frame);
+  graph.motions = MotionsOfAll(model.history, graph, ends, frame);
   const WarpField warp(graph);
   TriangleMesh mesh = model.mesh;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -39,11 +40,13 @@ StretchedArea WriteWarpedMeshes(const RunPaths& paths, int id,
   const double stretched_from = StretchedFrom(model.mesh);
   const std::vector<Skinning> skinning =
       SkinningIndex(model.graph, neighbors).Skin(model.mesh.vertices);
-  for (const FrameMotions& motions : model.history.frames) {
-    if (motions.frame % warped.every != 0) continue;
-    TriangleMesh mesh = WarpMesh(model, skinning, motions.frame, warped.whole);
+  const PartEnds ends = EndsOfParts(model.history, model.graph);
+  for (int i = 0; i < model.history.size(); ++i) {
+    const int frame = model.history.frame(i);
+    if (frame % warped.every != 0) continue;
+    TriangleMesh mesh = WarpMesh(model, ends, skinning, frame, warped.whole);
     cut += CutStretched(stretched_from, &mesh);
-    WritePly(paths.WarpedMesh(id, label, motions.frame), mesh);
+    WritePly(paths.WarpedMesh(id, label, frame), mesh);
   }
   return cut;
 }

@@ -11,7 +11,7 @@ from .errors import PathLike, RunError, brief, refuse
 from .files import check_version
 
 #: Newest version of the files of `problems/`, their attribute `version`.
-PROBLEM_VERSION = 2
+PROBLEM_VERSION = 3
 
 
 @dataclass

@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <cstdint>
-#include <utility>
+#include <functional>
 
 #include "splitfusion/lib/base/content_hash.h"
 #include "splitfusion/lib/base/error.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "support/expect_input_error.h"
+#include "support/motion_frames.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
@@ -23,35 +25,70 @@ NodeMotion Motion(double value) {
 
 MotionHistory TwoFrames() {
   MotionHistory history;
-  history.frames.push_back({3, true, {Motion(0.1), Motion(0.2)}, {0, 1}});
-  history.frames.push_back({5, false, {Motion(0.3), Motion(0.4)}});
+  history.Append({3, true, {Motion(0.1), Motion(0.2)}, {0, 1}});
+  history.Append({5, false, {Motion(0.3), Motion(0.4)}});
   return history;
 }
 
 TEST(MotionHistory, FindsFrames) {
   const MotionHistory history = TwoFrames();
-  ASSERT_NE(history.Find(5), nullptr);
+  ASSERT_TRUE(history.Find(5).has_value());
   EXPECT_FALSE(history.Find(5)->tracked);
-  EXPECT_EQ(history.Find(4), nullptr);
-  EXPECT_EQ(history.Find(6), nullptr);
-  EXPECT_EQ(MotionHistory().Find(0), nullptr);
+  EXPECT_FALSE(history.Find(4).has_value());
+  EXPECT_FALSE(history.Find(6).has_value());
+  EXPECT_TRUE(history.Has(3));
+  EXPECT_FALSE(history.Has(6));
+  EXPECT_FALSE(MotionHistory().Find(0).has_value());
+}
+
+TEST(MotionHistory, FramesInItsFileAreAsInMemory) {
+  std::vector<FrameMotions> frames;
+  for (int f = 0; f < 9; ++f) {
+    frames.push_back({2 * f,
+                      f % 3 != 0,
+                      {Motion(0.1 * f), Motion(0.2)},
+                      {0, static_cast<char>(f % 2)},
+                      {{0, 1}, {3, 4}}});
+  }
+  const MotionHistory kept = HistoryOf(frames);
+  // Of nine, two fit.
+  MotionHistory spooled = HistoryOf(frames, 2 * frames[0].bytes());
+  const MotionHistory copy = spooled;
+  for (const int i : {0, 5, 5, 8}) {
+    EditFrame(
+        i, [&](FrameMotions& frame) { frame.motions[1] = Motion(i); },
+        &spooled);
+  }
+  ASSERT_EQ(spooled.size(), 9);
+  for (int i = 0; i < 9; ++i) {
+    const FrameMotions a = kept.At(i), b = copy.At(i);
+    EXPECT_EQ(b.frame, 2 * i);
+    EXPECT_EQ(a.tracked, b.tracked);
+    EXPECT_EQ(a.seen, b.seen);
+    EXPECT_EQ(b.IndexOf(3), 1);
+    EXPECT_EQ(a.motions[0].rotation, b.motions[0].rotation);
+    EXPECT_EQ(a.motions[1].rotation, b.motions[1].rotation) << "a copy of it";
+    const bool edited = i == 0 || i == 5 || i == 8;
+    EXPECT_EQ(spooled.At(i).motions[1].rotation,
+              edited ? Motion(i).rotation : Motion(0.2).rotation);
+  }
 }
 
 TEST(Motions, RoundTripInFloat) {
   const TemporaryFolder folder;
   WriteMotions(folder / "motions.bin", TwoFrames(), 2);
   const MotionHistory read = ReadMotions(folder / "motions.bin");
-  ASSERT_EQ(read.frames.size(), 2u);
-  EXPECT_EQ(read.frames[0].frame, 3);
-  EXPECT_TRUE(read.frames[0].tracked);
-  EXPECT_FALSE(read.frames[1].tracked);
+  ASSERT_EQ(read.size(), 2);
+  EXPECT_EQ(read.frame(0), 3);
+  EXPECT_TRUE(read.At(0).tracked);
+  EXPECT_FALSE(read.At(1).tracked);
   const NodeMotion expected = Motion(0.4);
-  const NodeMotion& motion = read.frames[1].motions[1];
+  const NodeMotion motion = read.At(1).motions[1];
   EXPECT_TRUE(motion.rotation.isApprox(expected.rotation, 1e-6));
   EXPECT_TRUE(motion.translation.isApprox(expected.translation, 1e-6));
-  EXPECT_FALSE(read.frames[0].Saw(0));
-  EXPECT_TRUE(read.frames[0].Saw(1));
-  EXPECT_FALSE(read.frames[1].Saw(1)) << "not known";
+  EXPECT_FALSE(read.At(0).Saw(0));
+  EXPECT_TRUE(read.At(0).Saw(1));
+  EXPECT_FALSE(read.At(1).Saw(1)) << "not known";
 }
 
 TEST(Motions, HaveTheDocumentedLayout) {
@@ -74,25 +111,23 @@ TEST(Motions, HaveTheDocumentedLayout) {
 /// too, in frame 4, and that alone in frame 5.
 MotionHistory SomeInUse() {
   MotionHistory history;
-  history.frames.push_back(
-      {3, true, {Motion(0.1), Motion(0.2)}, {0, 1}, {{0, 2}}});
-  history.frames.push_back(
-      {4, true, {Motion(0.3), Motion(0.4), Motion(0.5)}, {1, 0, 1}});
-  history.frames.push_back({5, true, {Motion(0.6)}, {1}, {{2, 3}}});
+  history.Append({3, true, {Motion(0.1), Motion(0.2)}, {0, 1}, {{0, 2}}});
+  history.Append({4, true, {Motion(0.3), Motion(0.4), Motion(0.5)}, {1, 0, 1}});
+  history.Append({5, true, {Motion(0.6)}, {1}, {{2, 3}}});
   return history;
 }
 
 TEST(FrameMotions, KnowOfWhichNodesTheyAre) {
   const MotionHistory history = SomeInUse();
-  const FrameMotions& last = history.frames[2];
+  const FrameMotions last = history.At(2);
   EXPECT_EQ(last.IndexOf(1), -1);
   EXPECT_EQ(last.IndexOf(2), 0);
   EXPECT_EQ(last.IndexOf(3), -1);
   EXPECT_FALSE(last.Saw(0));
   EXPECT_TRUE(last.Saw(2));
   EXPECT_EQ(last.Of(2).translation, Motion(0.6).translation);
-  EXPECT_EQ(history.frames[1].IndexOf(2), 2);
-  EXPECT_EQ(history.frames[1].IndexOf(3), -1);
+  EXPECT_EQ(history.At(1).IndexOf(2), 2);
+  EXPECT_EQ(history.At(1).IndexOf(3), -1);
   const FrameMotions apart = {
       0, true, {Motion(1), Motion(2)}, {}, {{1, 2}, {4, 5}}};
   EXPECT_EQ(apart.IndexOf(4), 1);
@@ -110,7 +145,10 @@ TEST(MotionsOfAll, AreTheNearestOfNodesThatAreNotInUse) {
   graph.positions.resize(3);
   graph.parts = {{0, 3, 5}, {2, 4}};
   const auto turned_by = [&](int frame, int node) {
-    return MotionsOfAll(SomeInUse(), graph, frame)[node].rotation;
+    const MotionHistory history = SomeInUse();
+    return MotionsOfAll(history, graph, EndsOfParts(history, graph),
+                        frame)[node]
+        .rotation;
   };
   EXPECT_EQ(turned_by(3, 1), Motion(0.2).rotation);
   EXPECT_EQ(turned_by(3, 2), Motion(0.5).rotation) << "of frame 4";
@@ -126,13 +164,12 @@ TEST(Motions, OfNodesInUseSurviveWritingAndReading) {
   int nodes = 0;
   const MotionHistory read = ReadMotions(folder / "motions.bin", &nodes);
   EXPECT_EQ(nodes, 3);
-  ASSERT_EQ(read.frames.size(), 3u);
-  EXPECT_EQ(read.frames[0].motions.size(), 2u);
-  EXPECT_EQ(read.frames[0].IndexOf(2), -1);
-  EXPECT_TRUE(read.frames[1].ranges.empty());
-  EXPECT_TRUE(read.frames[2].Saw(2));
-  EXPECT_TRUE(
-      read.frames[2].Of(2).rotation.isApprox(Motion(0.6).rotation, 1e-6));
+  ASSERT_EQ(read.size(), 3);
+  EXPECT_EQ(read.At(0).motions.size(), 2u);
+  EXPECT_EQ(read.At(0).IndexOf(2), -1);
+  EXPECT_TRUE(read.At(1).ranges.empty());
+  EXPECT_TRUE(read.At(2).Saw(2));
+  EXPECT_TRUE(read.At(2).Of(2).rotation.isApprox(Motion(0.6).rotation, 1e-6));
   EXPECT_EQ(folder.Read("motions.bin").size(),
             16 + 3 * 20 + (2 + 3 + 1) * 49 + 8);
 }
@@ -140,7 +177,9 @@ TEST(Motions, OfNodesInUseSurviveWritingAndReading) {
 TEST(Motions, ThatAreDamagedAreNamedByTheirNode) {
   const TemporaryFolder folder;
   MotionHistory history = SomeInUse();
-  history.frames[2].motions[0].rotation *= -1;
+  EditFrame(
+      2, [](FrameMotions& frame) { frame.motions[0].rotation *= -1; },
+      &history);
   WriteMotions(folder / "motions.bin", history, 3);
   ExpectInputError([&] { ReadMotions(folder / "motions.bin"); },
                    "frame 5, node 2: its motion is no rotation");
@@ -152,7 +191,8 @@ TEST(Motions, OfNodesThatCannotBeAreRefused) {
        std::vector<std::vector<NodeRange>>{
            {{1, 3}}, {{1, 2}, {0, 1}}, {{0, 1}, {0, 1}}}) {
     MotionHistory history = TwoFrames();
-    history.frames[0].ranges = ranges;
+    EditFrame(
+        0, [&](FrameMotions& frame) { frame.ranges = ranges; }, &history);
     WriteMotions(folder / "motions.bin", history, 2);
     ExpectInputError([&] { ReadMotions(folder / "motions.bin"); },
                      "expected ascending ones of 2");
@@ -161,8 +201,8 @@ TEST(Motions, OfNodesThatCannotBeAreRefused) {
 
 TEST(Motions, OfNoFrameAreFine) {
   const TemporaryFolder folder;
-  WriteMotions(folder / "motions.bin", {}, 0);
-  EXPECT_TRUE(ReadMotions(folder / "motions.bin").frames.empty());
+  WriteMotions(folder / "motions.bin", MotionHistory(), 0);
+  EXPECT_TRUE(ReadMotions(folder / "motions.bin").empty());
 }
 
 TEST(Motions, RejectTruncatedAndForeignFiles) {
@@ -216,10 +256,10 @@ TEST(Motions, OfOlderVersionsAreRead) {
   for (const char version : {'1', '2', '3'}) {
     folder.Write("old.bin", OfVersion(version, bytes));
     const MotionHistory read = ReadMotions(folder / "old.bin");
-    ASSERT_EQ(read.frames.size(), 2u);
-    EXPECT_TRUE(read.frames[1].motions[1].rotation.isApprox(
-        Motion(0.4).rotation, 1e-6));
-    EXPECT_EQ(read.frames[0].seen,
+    ASSERT_EQ(read.size(), 2);
+    EXPECT_TRUE(
+        read.At(1).motions[1].rotation.isApprox(Motion(0.4).rotation, 1e-6));
+    EXPECT_EQ(read.At(0).seen,
               version < '3' ? std::vector<char>() : std::vector<char>({0, 1}));
   }
 }
@@ -233,18 +273,25 @@ TEST(Motions, ThatCannotBeAreRefused) {
     folder.Write("old.bin", OfVersion('1', folder.Read("motions.bin")));
     ExpectInputError([&] { ReadMotions(folder / "old.bin"); }, part);
   };
-  MotionHistory history = TwoFrames();
-  history.frames[1].motions[1].translation.y() = std::nan("");
-  refuses(history, "frame 5, node 1: its motion is no rotation and translat");
-  history = TwoFrames();
-  history.frames[0].motions[0].rotation(1, 1) += 0.1;
-  refuses(history, "frame 3, node 0: its motion is no rotation");
-  history = TwoFrames();
-  history.frames[0].motions[0].rotation *= -1;
-  refuses(history, "frame 3, node 0: its motion is no rotation");
-  history = TwoFrames();
-  std::swap(history.frames[0], history.frames[1]);
-  refuses(history, "frame 3: expected frames in ascending order");
+  const auto with = [](int i, const std::function<void(NodeMotion&)>& edit) {
+    MotionHistory history = TwoFrames();
+    EditFrame(
+        i, [&](FrameMotions& frame) { edit(frame.motions[i]); }, &history);
+    return history;
+  };
+  refuses(with(1, [](NodeMotion& m) { m.translation.y() = std::nan(""); }),
+          "frame 5, node 1: its motion is no rotation and translat");
+  refuses(with(0, [](NodeMotion& m) { m.rotation(1, 1) += 0.1; }),
+          "frame 3, node 0: its motion is no rotation");
+  refuses(with(0, [](NodeMotion& m) { m.rotation *= -1; }),
+          "frame 3, node 0: its motion is no rotation");
+  WriteMotions(folder / "motions.bin", TwoFrames(), 2);
+  std::string bytes = OfVersion('1', folder.Read("motions.bin"));
+  constexpr std::size_t kSecondFrame = 16 + 8 + 2 * 48;
+  bytes[kSecondFrame] = 3;
+  folder.Write("old.bin", bytes);
+  ExpectInputError([&] { ReadMotions(folder / "old.bin"); },
+                   "frame 3: expected frames in ascending order");
 }
 
 TEST(Motions, OfMoreFramesThanTheFileHoldsAreNotAllocated) {

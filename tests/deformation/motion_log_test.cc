@@ -12,6 +12,7 @@
 #include "splitfusion/lib/deformation/graph_growth.h"
 #include "splitfusion/lib/deformation/mesh_skinning.h"
 #include "splitfusion/lib/deformation/node_births.h"
+#include "support/motion_frames.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 
@@ -60,10 +61,10 @@ struct SlidingPlate {
 };
 
 void ExpectSame(const MotionHistory& a, const MotionHistory& b) {
-  ASSERT_EQ(a.frames.size(), b.frames.size());
-  for (std::size_t f = 0; f < a.frames.size(); ++f) {
-    const FrameMotions& one = a.frames[f];
-    const FrameMotions& other = b.frames[f];
+  ASSERT_EQ(a.size(), b.size());
+  for (int f = 0; f < a.size(); ++f) {
+    const FrameMotions one = a.At(f);
+    const FrameMotions other = b.At(f);
     EXPECT_EQ(one.frame, other.frame);
     EXPECT_EQ(one.tracked, other.tracked) << one.frame;
     EXPECT_EQ(one.seen, other.seen) << one.frame;
@@ -81,8 +82,7 @@ TEST(MotionLog, FramesInTheFileAreAsIfTheyHadStayedInMemory) {
   ASSERT_GT(kept.forgotten, 50);
   ASSERT_EQ(kept.log.size(), kFrames);
   const MotionHistory all = kept.log.All();
-  EXPECT_EQ(static_cast<int>(all.frames.front().motions.size()),
-            kept.graph.size());
+  EXPECT_EQ(static_cast<int>(all.At(0).motions.size()), kept.graph.size());
   ExpectSame(all, spooled.log.All());
 }
 
@@ -92,7 +92,8 @@ TEST(MotionLog, FindsFrames) {
   for (const int i : {0, 1, kFrames / 2, kFrames - 1}) {
     EXPECT_EQ(plate.log.frame(i), 2 * i);
     EXPECT_EQ(plate.log.tracked(i), i % 5 != 0);
-    ExpectSame({{plate.log.Find(2 * i).value()}}, {{all.frames[i]}});
+    ExpectSame(HistoryOf({plate.log.Find(2 * i).value()}),
+               HistoryOf({all.At(i)}));
   }
   EXPECT_FALSE(plate.log.Find(-1).has_value());
   EXPECT_FALSE(plate.log.Find(5).has_value());
@@ -138,7 +139,7 @@ TEST(MotionLog, APartIsSomeNodesFromTheFirstSightOfTheirsOn) {
   const MotionHistory all = kept.log.All();
   ASSERT_EQ(part.size(), kFrames - first / 2);
   for (int i = 0; i < part.size(); ++i) {
-    const FrameMotions& whole = all.frames[first / 2 + i];
+    const FrameMotions whole = all.At(first / 2 + i);
     const FrameMotions frame = part.At(i);
     EXPECT_EQ(frame.frame, whole.frame);
     ASSERT_EQ(frame.motions.size(), some.indices.size());

@@ -7,6 +7,7 @@
 #include "splitfusion/cost_functions/builtin_terms.h"
 #include "splitfusion/lib/energy/energy_term.h"
 #include "splitfusion/lib/energy/gradient_check.h"
+#include "splitfusion/lib/energy/links_in_time.h"
 #include "splitfusion/lib/energy/surface_history.h"
 #include "support/sample_correspondences.h"
 #include "support/sample_depth.h"
@@ -72,6 +73,11 @@ class GradientReport : public ::testing::Test {
     }
     lost_.assign(correspondences_.begin(), correspondences_.begin() + 9);
     before_.assign(graph_.size(), NodeMotion());
+    links_.known_positions = {{0, 0, 1}, {0.1, 0, 1.1}};
+    links_.known_motions.resize(2);
+    links_.edges = {{0, 1}, {0, graph_.size()}, {graph_.size() + 1, 2}};
+    links_.triples = {{0, 1, 2}, {graph_.size(), 3, graph_.size() + 1}};
+    links_.differences = {{1, -2, 1}, {0.5, -1.5, 1}};
     for (const int frame : {0, 1}) motions_.Append({frame, true, before_});
     const DepthObservation wall =
         ObserveAll(SmallCamera(), WallDepth(SmallCamera(), 1));
@@ -86,6 +92,7 @@ class GradientReport : public ::testing::Test {
     problem.anneal = 2;
     problem.lost = &lost_;
     problem.tracks = &tracks_;
+    problem.links = &links_;
     const SurfaceHistory history({graph_, motions_});
     const FrameFacts frame{/*index=*/2};
     problem.context.frame = &frame;
@@ -104,6 +111,7 @@ class GradientReport : public ::testing::Test {
   std::vector<Correspondence> correspondences_, lost_;
   std::vector<TrackedPoint> tracks_;
   std::vector<NodeMotion> before_;
+  LinksInTime links_;
   MotionLog motions_;
   TsdfVolume volume_{TsdfOptions{/*voxel_size=*/0.02, /*truncation=*/0.2}};
 };

@@ -10,6 +10,7 @@
 
 #include "support/bent_plate.h"
 #include "support/expect_input_error.h"
+#include "support/motion_frames.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
@@ -107,9 +108,8 @@ TEST_F(DepthAgreementTest, SurfaceHiddenBehindAnotherOneIsUncovered) {
 TEST_F(DepthAgreementTest, FramesInWhichASurfaceWasNotTrackedDoNotCount) {
   const auto lost_but_once = [](RecordedRun* run) {
     ShiftPlate(run, 0.3f);
-    for (FrameMotions& frame : run->surfaces[1].motions.frames) {
-      frame.tracked = frame.frame == 5;
-    }
+    EditFrames([](FrameMotions& frame) { frame.tracked = frame.frame == 5; },
+               &run->surfaces[1].motions);
   };
   const auto surfaces = Compare(lost_but_once, 5);
   EXPECT_EQ(surfaces[0].frames, 3);
@@ -120,9 +120,8 @@ TEST_F(DepthAgreementTest, FramesInWhichASurfaceWasNotTrackedDoNotCount) {
 TEST_F(DepthAgreementTest, SurfaceInPlainViewThatWasNotTrackedIsUncovered) {
   plain_view_pixels_ = 1000;
   const auto lost_but_once = [](RecordedRun* run) {
-    for (FrameMotions& frame : run->surfaces[1].motions.frames) {
-      frame.tracked = frame.frame == 5;
-    }
+    EditFrames([](FrameMotions& frame) { frame.tracked = frame.frame == 5; },
+               &run->surfaces[1].motions);
   };
   const auto surfaces = Compare(lost_but_once, 5);
   EXPECT_EQ(surfaces[1].frames, 1);

@@ -10,6 +10,7 @@
 #include "splitfusion/lib/base/error.h"
 #include "splitfusion/lib/evaluation/surface_attachment.h"
 #include "support/bent_plate.h"
+#include "support/motion_frames.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
@@ -124,7 +125,7 @@ AnimatedSurface PlateSurface(int id, float z) {
   surface.id = id;
   surface.neighbors_per_point = 6;
   surface.graph = MakeRigidGraph(Rigid3d::Identity());
-  surface.motions.frames.push_back({0, true, surface.graph.motions});
+  surface.motions.Append({0, true, surface.graph.motions});
   surface.mesh.vertices = {{-1, -1, z}, {-1, 1, z}, {1, 1, z}, {1, -1, z}};
   surface.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return AnimatedSurface(surface);
@@ -135,7 +136,9 @@ TEST(AnimatedSurface, BeginsAnewWhereNothingGoesOn) {
   surface.graph.positions.resize(5);
   surface.graph.motions.resize(5);
   surface.graph.neighbors.resize(5);
-  surface.motions.frames[0].motions.resize(5);
+  EditFrame(
+      0, [](FrameMotions& frame) { frame.motions.resize(5); },
+      &surface.motions);
   // Two refuted parts and the rest of a model, and the one that replaced it.
   surface.graph.parts = {{0, 0, 4}, {1, 6, 9}, {2, 0, 20}, {3, 20}};
   const AnimatedSurface plate(surface);

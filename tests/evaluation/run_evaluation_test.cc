@@ -16,6 +16,7 @@
 #include "splitfusion/lib/evaluation/evaluation_json.h"
 #include "splitfusion/lib/evaluation/evaluation_table.h"
 #include "support/bent_plate.h"
+#include "support/motion_frames.h"
 #include "support/repository.h"
 #include "support/temporary_folder.h"
 
@@ -43,12 +44,14 @@ void SortByX(RecordedSurface* surface) {
     graph.neighbors[i] = before.neighbors[order[i]];
     for (int& j : graph.neighbors[i]) j = number[j];
   }
-  for (FrameMotions& frame : surface->motions.frames) {
-    const std::vector<NodeMotion> motions = frame.motions;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      frame.motions[i] = motions[order[i]];
-    }
-  }
+  EditFrames(
+      [&](FrameMotions& frame) {
+        const std::vector<NodeMotion> motions = frame.motions;
+        for (std::size_t i = 0; i < order.size(); ++i) {
+          frame.motions[i] = motions[order[i]];
+        }
+      },
+      &surface->motions);
 }
 
 /// A run of the plate and its ground truth, as files.
@@ -126,7 +129,10 @@ TEST_F(RunEvaluationTest, AModelIsThatOfItsFrame) {
   for (int i = 0; i < graph.size(); ++i) {
     const bool left = graph.positions[i].x() < 0;
     graph.first_seen.push_back(left ? 0 : 1);
-    if (!left) plate.motions.frames[0].motions[i].translation.z() += 0.1;
+    if (left) continue;
+    EditFrame(
+        0, [i](FrameMotions& f) { f.motions[i].translation.z() += 0.1; },
+        &plate.motions);
   }
   const auto frames = [&] {
     return EvaluateRun(run, AnimateSurfaces(run.surfaces),
@@ -196,11 +202,13 @@ TEST_F(RunEvaluationTest, TracksFollowTheBendingPlate) {
 TEST_F(RunEvaluationTest, WhoIsNotShownIsMissingAndNotAbsent) {
   options_.presence.plain_view_pixels = 1000;
   RecordedRun run = ReadRun(folder_ / "run");
-  for (FrameMotions& frame : run.surfaces[1].motions.frames) {
-    if (frame.frame < 4) continue;
-    frame.tracked = false;  // Left out, if it were not in plain view.
-    for (NodeMotion& motion : frame.motions) motion.translation.x() += 0.6;
-  }
+  EditFrames(
+      [](FrameMotions& frame) {
+        if (frame.frame < 4) return;
+        frame.tracked = false;  // Left out, if it were not in plain view.
+        for (NodeMotion& motion : frame.motions) motion.translation.x() += 0.6;
+      },
+      &run.surfaces[1].motions);
   const RunEvaluation evaluation =
       EvaluateRun(run, AnimateSurfaces(run.surfaces),
                   ReadGroundTruth(folder_ / "sequence"), options_);
@@ -246,9 +254,12 @@ TEST_F(RunEvaluationTest, APerfectModelHasAllThatWasSeen) {
 
 TEST_F(RunEvaluationTest, AModelBehindTheLiveDepthIsStray) {
   RecordedRun run = ReadRun(folder_ / "run");
-  for (NodeMotion& motion : run.surfaces[1].motions.frames[5].motions) {
-    motion.translation.z() += 0.05;
-  }
+  EditFrame(
+      5,
+      [](FrameMotions& frame) {
+        for (NodeMotion& motion : frame.motions) motion.translation.z() += 0.05;
+      },
+      &run.surfaces[1].motions);
   const auto shapes =
       EvaluateRun(run, AnimateSurfaces(run.surfaces), std::nullopt, options_)
           .shapes;

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/export/appearance.h"
 #include "splitfusion/lib/export/influences.h"
 #include "support/expect_input_error.h"
 #include "support/joined_run.h"
+#include "support/motion_frames.h"
 #include "support/temporary_folder.h"
 
 namespace splitfusion {
@@ -129,7 +131,9 @@ TEST_F(ExportSceneTest, LeavesStretchedTrianglesOut) {
   int nodes = 0;
   MotionHistory motions = ReadMotions(folder + "/motions.bin", &nodes);
   // One node is torn away, in one frame.
-  motions.frames[5].motions[4].translation.z() -= 0.3;
+  EditFrame(
+      5, [](FrameMotions& f) { f.motions[4].translation.z() -= 0.3; },
+      &motions);
   WriteMotions(folder + "/motions.bin", motions, nodes);
   const ExportScene scene = ReadExportScene(folder_ / "run", options_);
   const ExportSurface& cut = scene.surfaces[1];

@@ -7,13 +7,21 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "splitfusion/cost_functions/arap.h"
+#include "splitfusion/cost_functions/builtin_terms.h"
+#include "splitfusion/lib/energy/frozen_problem.h"
+#include "splitfusion/lib/energy/gradient_check.h"
 #include "splitfusion/lib/model/hidden_motions.h"
+#include "splitfusion/pipelines/refine_pass.h"
+#include "support/expect_input_error.h"
 #include "support/hidden_plate.h"
+#include "support/motion_frames.h"
 #include "support/sample_graphs.h"
+#include "support/temporary_folder.h"
 
 namespace splitfusion {
 namespace {
@@ -46,8 +54,8 @@ class CeresReference {
   CeresReference(const std::map<int, Rigid3d>& poses, double smoothness,
                  const SurfaceModel& model)
       : nodes_(model.graph.size()),
-        twists_(model.history.frames.size() * nodes_, {{}}) {
-    const auto& frames = model.history.frames;
+        twists_(model.history.size() * nodes_, {{}}) {
+    const std::vector<FrameMotions> frames = FramesOf(model.history);
     for (std::size_t f = 0; f < frames.size(); ++f) {
       for (int i = 0; i < nodes_; ++i) {
         problem_.AddParameterBlock(Twist(f, i), 6);
@@ -136,7 +144,8 @@ class CeresReference {
       auto* smooth = new SmoothInTime;
       std::vector<double*> blocks;
       for (int k = 0; k < 3; ++k) {
-        const FrameMotions& frame = model.history.frames[f + k - 1];
+        const FrameMotions frame =
+            model.history.At(static_cast<int>(f) + k - 1);
         smooth->centers[k] =
             model.graph.positions[i] + frame.motions[i].translation;
         smooth->poses[k] = poses.at(frame.frame);
@@ -174,6 +183,66 @@ class BendingPlate : public testing::Test {
 
 using HiddenMotionsAndCeres = BendingPlate;
 
+TEST_F(HiddenMotionsAndCeres, SolveTheSameWindow) {
+  // Its graph is of what is sought, and known are the ends of its links.
+  const SurfaceModel before = model_;
+  std::vector<WindowProblem> windows;
+  RefineHiddenMotions(poses_, {}, &model_, [&](const WindowProblem& window) {
+    windows.push_back(window);
+  });
+  ASSERT_EQ(windows.size(), 1u);
+  const WindowProblem& window = windows[0];
+  EXPECT_EQ(window.graph.size(), window.report.hidden);
+  const FrozenProblem problem = FreezeWindow(window, 3, 100);
+  EXPECT_EQ(problem.surface, 3);
+  const double unit = window.links.edges.size() * kResidualUnit * kResidualUnit;
+  const auto sum = [](const HiddenMotionCost& c) {
+    return c.arap + c.smoothness;
+  };
+  EXPECT_NEAR(problem.start.cost * unit, sum(window.report.initial),
+              1e-9 * sum(window.report.initial));
+  EXPECT_NEAR(problem.start.terms[0] * unit, window.report.initial.arap,
+              1e-9 * window.report.initial.arap);
+  const double least = CeresReference(poses_, 100, before).LeastCost();
+  for (const char* name : {"ceres", "gn_cholesky", "gn_pcg"}) {
+    SolverOptions options;
+    options.solver = name;
+    options.max_iterations = 200;
+    options.eta = 1e-3;
+    DeformationGraph graph = problem.graph;
+    const SolverReport report = Minimize(problem.View(), options, &graph);
+    EXPECT_NEAR(report.final_cost * unit, least, 1e-3 * least) << name;
+    EXPECT_GT(problem.final_cost, 0.99 * report.final_cost) << name;
+    EXPECT_LT(problem.final_cost, 1.02 * report.final_cost) << name;
+  }
+}
+
+TEST_F(HiddenMotionsAndCeres, WindowsSurviveFreezing) {
+  const TemporaryFolder folder;
+  std::optional<FrozenProblem> problem;
+  RefineHiddenMotions(poses_, {}, &model_, [&](const WindowProblem& window) {
+    problem = FreezeWindow(window, 1, 100);
+  });
+  WriteFrozenProblem(folder / "window.h5", *problem);
+  const FrozenProblem read =
+      ReadFrozenProblem(folder / "window.h5", BuiltinTerms());
+  EXPECT_EQ(read.links->edges, problem->links->edges);
+  EXPECT_EQ(read.links->triples, problem->links->triples);
+  EXPECT_EQ(read.final_cost, problem->final_cost);
+  const ProblemStart start = EvaluateStart(read.View(), read.graph);
+  EXPECT_EQ(start.cost, problem->start.cost);
+  EXPECT_EQ(start.gradient, problem->start.gradient);
+  for (const GradientError& error : CheckGradients(read.View(), read.graph)) {
+    EXPECT_GT(error.residuals, 0) << error.term;
+    EXPECT_LT(error.relative, 1e-6) << error.term;
+  }
+  problem->links->edges[0][1] = 1 << 20;
+  WriteFrozenProblem(folder / "window.h5", *problem);
+  ExpectInputError(
+      [&] { ReadFrozenProblem(folder / "window.h5", BuiltinTerms()); },
+      "links/edges: expected different ones of");
+}
+
 TEST_F(HiddenMotionsAndCeres, FindTheSameLeastEnergy) {
   const SurfaceModel before = model_;
   const std::vector<RefinedWindow> windows =
@@ -192,7 +261,7 @@ TEST_F(HiddenMotionsAndCeres, FindTheSameLeastEnergy) {
 std::pair<double, double> SeenResiduals(const std::map<int, Rigid3d>& poses,
                                         double smoothness,
                                         const SurfaceModel& model) {
-  const auto& frames = model.history.frames;
+  const std::vector<FrameMotions> frames = FramesOf(model.history);
   double sums[2] = {};
   int counts[2] = {};
   for (std::size_t f = 0; f < frames.size(); ++f) {

@@ -32,13 +32,13 @@ RetiredModels OneAndTwo() {
 void ExpectOneAndTwo(const RetiredModels& models) {
   ASSERT_EQ(models.size(), 2);
   for (const int i : {1, 0}) {
-    const SurfaceModel model = models.At(i);
+    const TrackedModel model = models.At(i);
     EXPECT_EQ(model.mesh.vertices,
               PlateMesh(0.1 * (i + 1), 0.1, 0.05, 1).vertices);
     EXPECT_EQ(model.graph.motions[0].translation.x(), i + 1);
-    ASSERT_EQ(model.history.frames.size(), 3u * (i + 1));
-    EXPECT_EQ(model.history.frames[2].motions[0].translation.y(), 2);
-    EXPECT_TRUE(model.history.frames[2].Saw(0));
+    ASSERT_EQ(model.history.size(), 3 * (i + 1));
+    EXPECT_EQ(model.history.At(2).motions[0].translation.y(), 2);
+    EXPECT_TRUE(model.history.At(2).Saw(0));
   }
 }
 

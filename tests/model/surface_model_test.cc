@@ -9,6 +9,7 @@
 #include "splitfusion/lib/deformation/skinning.h"
 #include "splitfusion/lib/model/part_motions.h"
 #include "splitfusion/lib/visibility/seen_triangles.h"
+#include "support/motion_frames.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 
@@ -27,9 +28,8 @@ SurfaceModel MovingPlate(int first, int last, double width = 0.3) {
     for (NodeMotion& motion : model.graph.motions) {
       motion.translation.y() = 0.01 * frame;
     }
-    model.history.frames.push_back(
-        {frame, true, model.graph.motions,
-         std::vector<char>(model.graph.size(), true)});
+    model.history.Append({frame, true, model.graph.motions,
+                          std::vector<char>(model.graph.size(), true)});
   }
   return model;
 }
@@ -39,7 +39,7 @@ TEST(JoinModels, OneModelStaysAsItIs) {
   const SurfaceModel joined = JoinModels({plate});
   EXPECT_TRUE(joined.graph.parts.empty());
   EXPECT_EQ(joined.mesh.vertices, plate.mesh.vertices);
-  EXPECT_EQ(joined.history.frames.size(), 3u);
+  EXPECT_EQ(joined.history.size(), 3);
 }
 
 TEST(JoinModels, ShowsEachModelInItsFramesWhereItWas) {
@@ -54,8 +54,8 @@ TEST(JoinModels, ShowsEachModelInItsFramesWhereItWas) {
   EXPECT_EQ(joined.graph.parts[1].first_frame, 5);
   const std::vector<Skinning> skinning =
       SkinningIndex(joined.graph, 6).Skin(joined.mesh.vertices);
-  ASSERT_EQ(joined.history.frames.size(), 8u);
-  for (const FrameMotions& frame : joined.history.frames) {
+  ASSERT_EQ(joined.history.size(), 8);
+  for (const FrameMotions& frame : joined.history) {
     const bool late = frame.frame >= 5;
     EXPECT_EQ(frame.Saw(0), !late);
     EXPECT_EQ(frame.Saw(nodes), late);
@@ -79,20 +79,21 @@ TEST(JoinModels, ShowsEachModelInItsFramesWhereItWas) {
 
 TEST(JoinModels, ThousandsOfPartsLieNearEnoughForSinglePrecision) {
   const SurfaceModel plate = MovingPlate(2, 3, 0.1);
-  std::vector<SurfaceModel> parts(3000, plate);
-  for (SurfaceModel& part : parts) part.history.frames.resize(1);
+  SurfaceModel part = plate;
+  part.history = Frames(plate.history, 0, 1);
+  const std::vector<SurfaceModel> parts(3000, part);
   const SurfaceModel joined = JoinModels(parts);
   ASSERT_EQ(joined.graph.parts.size(), parts.size());
+  const FrameMotions first = joined.history.At(0);
   Eigen::AlignedBox3d extent;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const int node = joined.graph.parts[i].node;
     const Eigen::Vector3d& g = joined.graph.positions[node];
     extent.extend(g);
-    EXPECT_TRUE(
-        (g + joined.history.frames[0].motions[node].translation)
-            .isApprox(plate.graph.positions[0] +
-                          plate.history.frames[0].motions[0].translation,
-                      1e-12));
+    EXPECT_TRUE((g + first.motions[node].translation)
+                    .isApprox(plate.graph.positions[0] +
+                                  plate.history.At(0).motions[0].translation,
+                              1e-12));
     if (i == 0) continue;
     const Eigen::Vector3d& before =
         joined.graph.positions[joined.graph.parts[i - 1].node];
@@ -118,8 +119,8 @@ TEST(JoinModels, ShowsARefutedPartBesideTheRestUntilItsEnd) {
   const SurfaceModel joined = JoinModels({part, rest});
   const std::vector<Skinning> skinning =
       SkinningIndex(joined.graph, 6).Skin(joined.mesh.vertices);
-  ASSERT_EQ(joined.history.frames.size(), 8u);
-  for (const FrameMotions& frame : joined.history.frames) {
+  ASSERT_EQ(joined.history.size(), 8);
+  for (const FrameMotions& frame : joined.history) {
     EXPECT_EQ(frame.motions.size(),
               part.graph.size() * (frame.frame < 5 ? 2 : 1));
     EXPECT_EQ(

@@ -8,6 +8,7 @@
 
 #include "splitfusion/lib/base/archive.h"
 #include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "splitfusion/lib/geometry/stretched_area.h"
 #include "splitfusion/lib/render/model_rendering.h"
 #include "splitfusion/lib/report/surface_output.h"
@@ -102,7 +103,7 @@ TEST(Surface, GrowsOverWhatComesIntoView) {
   }
   EXPECT_GT(box.graph().size(), 1.5 * nodes);
   EXPECT_GT(box.mesh().vertices.size(), 1.5 * vertices);
-  for (const FrameMotions& frame : box.history().All().frames) {
+  for (const FrameMotions& frame : box.history().All()) {
     EXPECT_EQ(frame.motions.size(), box.graph().positions.size());
   }
 }
@@ -153,7 +154,7 @@ TEST(Surface, BeginsAnewUnderItsIdAndKeepsWhatItWas) {
   EXPECT_EQ(model.graph.parts[0].end_frame, 5);
   EXPECT_EQ(model.graph.parts[1].node, nodes);
   EXPECT_EQ(model.graph.parts[1].first_frame, 5);
-  EXPECT_EQ(model.history.frames.size(), 2u);
+  EXPECT_EQ(model.history.size(), 2);
   EXPECT_EQ(model.graph.size(), nodes + box.graph().size());
 }
 
@@ -193,7 +194,7 @@ TEST(Surface, ForgetsWhatHangsInFreeSpaceButForTheFramesSoFar) {
   EXPECT_EQ(model.graph.parts[0].end_frame, 22);
   EXPECT_EQ(model.graph.parts[1].first_frame, 4);
   EXPECT_EQ(model.graph.parts[1].end_frame, ModelPart::kNoEnd);
-  EXPECT_EQ(model.history.frames.size(), 20u);
+  EXPECT_EQ(model.history.size(), 20);
 }
 
 /// Carries the nodes right of the middle of kWhole by so many metres.
@@ -339,7 +340,7 @@ TEST(Surface, RefutedPartsGoOnAfterACheckpoint) {
   ASSERT_EQ(b.graph.parts.size(), 2u);
   EXPECT_EQ(b.graph.parts[0].end_frame, 10);
   EXPECT_EQ(b.graph.parts[1].node, a.graph.parts[1].node);
-  EXPECT_EQ(b.history.frames.size(), a.history.frames.size());
+  EXPECT_EQ(b.history.size(), a.history.size());
 }
 
 TEST(Surface, ForgetsWhatWasSeenSeldomAndIsHiddenByItself) {
@@ -451,7 +452,7 @@ TEST(Surface, ForgetsTheNodesOfWhatIsRefuted) {
     box.RecordMotions(frame, true);
   }
   EXPECT_LT(box.graph().size(), 0.9 * nodes);
-  for (const FrameMotions& frame : box.history().All().frames) {
+  for (const FrameMotions& frame : box.history().All()) {
     EXPECT_EQ(static_cast<int>(frame.motions.size()), box.graph().size());
   }
   const SkinningIndex index(box.graph(), 6);
@@ -501,7 +502,7 @@ TEST(Surface, IsWrittenWithConstantVertexOrder) {
   EXPECT_GT(TsdfVolume::Read(folder / (at + "tsdf.vdb")).leaf_count(), 0u);
   EXPECT_EQ(ReadGraph(folder / (at + "graph.json"), nullptr).size(),
             box.graph().size());
-  EXPECT_EQ(ReadMotions(folder / (at + "motions.bin")).frames.size(), 3u);
+  EXPECT_EQ(ReadMotions(folder / (at + "motions.bin")).size(), 3);
 }
 
 TEST(Surface, WarpedMeshesHoldWhatWasSeenByThen) {

@@ -106,7 +106,7 @@ TEST(SplitFusion, TracksCameraAndPersonAndMapsBoth) {
   EXPECT_GT(fusion.surfaces().at(0)->mesh().vertices.size(), 20000u);
   for (const auto& [id, surface] : fusion.surfaces()) {
     EXPECT_EQ(surface->history().frame(0), surface->first_frame());
-    for (const FrameMotions& motions : surface->history().All().frames) {
+    for (const FrameMotions& motions : surface->history().All()) {
       ASSERT_EQ(motions.motions.size(), surface->graph().positions.size());
     }
   }

@@ -11,6 +11,7 @@
 
 #include "render/plate_views.h"
 #include "splitfusion/lib/base/pi.h"
+#include "support/motion_frames.h"
 
 namespace splitfusion {
 namespace {
@@ -39,7 +40,7 @@ std::size_t Middle(const SurfaceModel& model) {
 Color ColorOf(const SurfaceModel& model, const std::vector<cv::Vec3b>& bgr) {
   BestViewColors colors(kPlateSurface, model, 4);
   for (std::size_t f = 0; f < bgr.size(); ++f) {
-    Add(model.history.frames[f].frame, See(model, f, bgr[f]), &colors);
+    Add(model.history.frame(f), See(model, f, bgr[f]), &colors);
   }
   return colors.Colors()[Middle(model)];
 }
@@ -87,7 +88,9 @@ TEST(BestViewColors, WhatMovesInTheImageIsBlurred) {
   const double share = 1 / (1 + way / 2);
   EXPECT_NEAR(ColorOf(model, {kGreen, kBlue})[2], 255 * share / (1 + share), 6);
   // The same way in five frames.
-  model.history.frames[1].frame = 5;
+  std::vector<FrameMotions> frames = FramesOf(model.history);
+  frames[1].frame = 5;
+  model.history = HistoryOf(frames);
   const double slow = 1 / (1 + way / 10);
   EXPECT_NEAR(ColorOf(model, {kGreen, kBlue})[2], 255 * slow / (1 + slow), 6);
 }
@@ -106,8 +109,12 @@ TEST(BestViewColors, WhatLiesBesideLiveDepthIsNotSeen) {
 TEST(BestViewColors, NorAreHiddenNodesAndLostFrames) {
   SurfaceModel model = Plate();
   AddFrame(0, Away(0), &model);
-  std::vector<char>& seen = model.history.frames[0].seen;
-  std::fill(seen.begin(), seen.end(), false);
+  EditFrame(
+      0,
+      [](FrameMotions& frame) {
+        std::fill(frame.seen.begin(), frame.seen.end(), false);
+      },
+      &model.history);
   EXPECT_EQ(ColorOf(model, {kGreen}), kFused);
   // Of a frame that it has no motions of.
   BestViewColors colors(kPlateSurface, model, 4);

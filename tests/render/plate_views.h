@@ -36,7 +36,7 @@ inline SurfaceModel Plate(double step = 0.025) {
 inline void AddFrame(int frame, const Rigid3d& motion, SurfaceModel* model) {
   DeformationGraph graph = model->graph;
   ApplyRigidMotion(motion, &graph);
-  model->history.frames.push_back(
+  model->history.Append(
       {frame, true, graph.motions, std::vector<char>(graph.size(), true)});
 }
 
@@ -53,7 +53,7 @@ inline LiveView View(const cv::Mat_<float>& depth, const cv::Vec3b& bgr) {
 inline LiveView See(const SurfaceModel& model, std::size_t index,
                     const cv::Vec3b& bgr) {
   DeformationGraph graph = model.graph;
-  graph.motions = model.history.frames[index].motions;
+  graph.motions = model.history.At(index).motions;
   const WarpField warp(graph);
   const SkinningIndex skinning(graph, 4);
   TriangleMesh mesh = model.mesh;

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "splitfusion/lib/deformation/graph_file.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/render/rasterizer.h"
 #include "splitfusion/lib/sequence/trajectory.h"
@@ -239,13 +240,14 @@ void BentPlate::WriteRun(const std::string& folder) const {
   MotionHistory plate;
   const DeformationGraph graph = PlateGraph();
   for (int f = 0; f < frames; ++f) {
-    wall.frames.push_back(
+    wall.Append(
         {f, true, MakeRigidGraph(WorldFromCamera(f).inverse()).motions});
     if (f < first_frame) continue;
-    plate.frames.push_back({f, true, {}});
+    FrameMotions frame{f, true, {}};
     for (const Eigen::Vector3d& g : graph.positions) {
-      plate.frames.back().motions.push_back(PlateMotion(*this, g, f));
+      frame.motions.push_back(PlateMotion(*this, g, f));
     }
+    plate.Append(std::move(frame));
   }
   WriteSurface(root / "surfaces/000_background", Wall(),
                MakeRigidGraph(Rigid3d::Identity()), wall);

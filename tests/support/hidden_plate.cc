@@ -1,5 +1,6 @@
 #include "support/hidden_plate.h"
 
+#include "support/motion_frames.h"
 #include "support/sample_graphs.h"
 #include "support/sample_meshes.h"
 
@@ -30,7 +31,7 @@ SurfaceModel SeenPlate(const std::map<int, Rigid3d>& poses,
     MoveNodes([&, index = frame, view = pose.inverse()](
                   const Eigen::Vector3d& p) { return view * map(p, index); },
               &graph);
-    model.history.frames.push_back(
+    model.history.Append(
         {frame, true, graph.motions, std::vector<char>(graph.size(), true)});
   }
   return model;
@@ -40,14 +41,16 @@ void Hide(int first, int last, const std::function<bool(int)>& is_hidden,
           SurfaceModel* model) {
   const std::vector<NodeMotion> before =
       model->history.Find(first - 1)->motions;
-  for (FrameMotions& frame : model->history.frames) {
-    if (frame.frame < first || frame.frame > last) continue;
-    for (int i = 0; i < model->graph.size(); ++i) {
-      if (!is_hidden(i)) continue;
-      frame.seen[i] = false;
-      frame.motions[i] = before[i];
-    }
-  }
+  EditFrames(
+      [&](FrameMotions& frame) {
+        if (frame.frame < first || frame.frame > last) return;
+        for (int i = 0; i < model->graph.size(); ++i) {
+          if (!is_hidden(i)) continue;
+          frame.seen[i] = false;
+          frame.motions[i] = before[i];
+        }
+      },
+      &model->history);
 }
 
 Eigen::Vector3d Walk(const Eigen::Vector3d& p, int frame) {

@@ -5,8 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "splitfusion/lib/deformation/graph_file.h"
-#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "splitfusion/lib/evaluation/recorded_run.h"
+#include "support/motion_frames.h"
 #include "support/sample_meshes.h"
 
 namespace splitfusion {
@@ -36,12 +37,15 @@ void AppendCopy(const RecordedSurface& one, double aside,
     for (int& node : neighbors) node += nodes;
     all->graph.neighbors.push_back(neighbors);
   }
-  for (std::size_t f = 0; f < one.motions.frames.size(); ++f) {
-    for (NodeMotion motion : one.motions.frames[f].motions) {
-      motion.translation -= shift;
-      all->motions.frames[f].motions.push_back(motion);
-    }
-  }
+  EditFrames(
+      [&](FrameMotions& frame) {
+        const FrameMotions own = *one.motions.Find(frame.frame);
+        for (NodeMotion motion : own.motions) {
+          motion.translation -= shift;
+          frame.motions.push_back(motion);
+        }
+      },
+      &all->motions);
 }
 
 RecordedSurface Joined(const RecordedSurface& one) {
@@ -51,10 +55,12 @@ RecordedSurface Joined(const RecordedSurface& one) {
   all.graph.neighbors.clear();
   all.graph.motions.clear();
   all.graph.first_seen.clear();
-  for (FrameMotions& frame : all.motions.frames) {
-    frame.motions.clear();
-    frame.seen.clear();
-  }
+  EditFrames(
+      [](FrameMotions& frame) {
+        frame.motions.clear();
+        frame.seen.clear();
+      },
+      &all.motions);
   for (int part = 0; part < 3; ++part) AppendCopy(one, part, &all);
   const int nodes = one.graph.size();
   all.graph.parts = {{0, 1, 3}, {nodes, 1, 6}, {2 * nodes, 6}};
@@ -69,7 +75,7 @@ RecordedSurface Ball() {
   for (int frame = 4; frame <= 8; ++frame) {
     NodeMotion motion;
     motion.translation.x() = 0.01 * frame;
-    ball.motions.frames.push_back({frame, true, {motion}});
+    ball.motions.Append({frame, true, {motion}});
   }
   return ball;
 }

@@ -18,11 +18,11 @@ bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 bool SameSurface(const Surface& a, const Surface& b) {
-  const auto frames_a = a.history().All().frames;
-  const auto frames_b = b.history().All().frames;
-  if (frames_a.size() != frames_b.size()) return false;
-  for (std::size_t i = 0; i < frames_a.size(); ++i) {
-    if (!SameBytes(frames_a[i].motions, frames_b[i].motions)) return false;
+  if (a.history().size() != b.history().size()) return false;
+  for (int i = 0; i < a.history().size(); ++i) {
+    if (!SameBytes(a.history().At(i).motions, b.history().At(i).motions)) {
+      return false;
+    }
   }
   return SameBytes(a.graph().positions, b.graph().positions) &&
          a.graph().neighbors == b.graph().neighbors &&

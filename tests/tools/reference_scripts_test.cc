@@ -9,9 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "splitfusion/lib/deformation/motion_history.h"
 #include "splitfusion/lib/evaluation/animated_surface.h"
 #include "splitfusion/lib/report/run_paths.h"
+#include "support/motion_frames.h"
 #include "support/program.h"
 #include "support/shared_data.h"
 #include "support/temporary_folder.h"
@@ -35,15 +37,17 @@ constexpr int kLedAway = 7;
 /// Moves a surface aside in the motions and warped meshes of later frames.
 void LeadAway(const std::string& folder) {
   RecordedSurface surface = ReadRecordedSurface(folder);
-  for (FrameMotions& frame : surface.motions.frames) {
-    if (frame.frame < kLedAway) continue;
-    for (NodeMotion& motion : frame.motions) motion.translation.x() += 0.5;
-  }
+  EditFrames(
+      [](FrameMotions& frame) {
+        if (frame.frame < kLedAway) return;
+        for (NodeMotion& motion : frame.motions) motion.translation.x() += 0.5;
+      },
+      &surface.motions);
   WriteMotions(folder + "/motions.bin", surface.motions, surface.graph.size());
   // It is no longer the run that its marker describes.
   std::filesystem::remove(std::filesystem::path(folder) / "../../run.json");
   const AnimatedSurface animated(surface);
-  for (const FrameMotions& frame : surface.motions.frames) {
+  for (const FrameMotions& frame : surface.motions) {
     WritePly(folder + "/warped/" + RunPaths::FrameName(frame.frame) + ".ply",
              animated.MeshAt(frame.frame));
   }

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "sf_run_fixture.h"
-#include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/deformation/motion_file.h"
 #include "support/expect_refused.h"
 
 namespace splitfusion {
@@ -50,14 +50,13 @@ class SfRefine : public SfRun {
                                   const std::string& b) const {
     const MotionHistory one = Motions(a), other = Motions(b);
     std::pair<int, int> count;
-    EXPECT_EQ(one.frames.size(), other.frames.size());
-    for (std::size_t f = 0; f < one.frames.size(); ++f) {
-      const std::vector<NodeMotion>& motions = one.frames[f].motions;
-      const std::vector<char>& seen = one.frames[f].seen;
+    EXPECT_EQ(one.size(), other.size());
+    for (int f = 0; f < one.size(); ++f) {
+      const std::vector<NodeMotion> motions = one.At(f).motions;
+      const std::vector<NodeMotion> others = other.At(f).motions;
+      const std::vector<char> seen = one.At(f).seen;
       for (std::size_t i = 0; i < motions.size(); ++i) {
-        if (motions[i].translation == other.frames[f].motions[i].translation) {
-          continue;
-        }
+        if (motions[i].translation == others[i].translation) continue;
         ++(seen[i] != 0 ? count.first : count.second);
       }
     }
@@ -137,6 +136,35 @@ TEST_F(SfRefine, EstimatesHowWellHiddenMotionsAreKnown) {
               HasSubstr("--refine_samples=2\n"));
 }
 
+TEST_F(SfRefine, FreezesItsWindowsForOtherSolvers) {
+  MakeRun();
+  const ProgramResult result = Refine("refined", "--freeze=1");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  int windows = 0;
+  std::istringstream lines(folder_.Read("refined/refinement.jsonl"));
+  for (std::string line; std::getline(lines, line); ++windows) {
+    EXPECT_TRUE(folder_.Has("refined/problems/000000_001_hidden_0.h5"));
+  }
+  ASSERT_GT(windows, 0);
+  const ProgramResult solved = RunProgram(
+      "sf_solve",
+      (folder_ / "refined/problems/000000_001_hidden_0.h5") +
+          " --solvers=gn_cholesky,ceres --output=" + (folder_ / "solved"));
+  ASSERT_EQ(solved.exit_code, 0) << solved.errors;
+  EXPECT_THAT(solved.output, HasSubstr("gn_cholesky: 1 converged"));
+  EXPECT_THAT(solved.output, HasSubstr("ceres: 1 converged"));
+  // They are of that refinement alone.
+  ASSERT_EQ(RunProgram("sf_refine", (folder_ / "refined") +
+                                        " --output=" + (folder_ / "again"))
+                .exit_code,
+            0);
+  EXPECT_FALSE(folder_.Has("again/problems/000000_001_hidden_0.h5"));
+  ExpectRefused("sf_refine",
+                (folder_ / "run") + " --freeze=-1 --output=" +
+                    (folder_ / "other"),
+                "freeze = -1: expected >= 0");
+}
+
 TEST_F(SfRefine, IsWhatTheRunItselfWouldHaveDone) {
   MakeRun("--refine=false");
   const ProgramResult whole =
@@ -145,11 +173,12 @@ TEST_F(SfRefine, IsWhatTheRunItselfWouldHaveDone) {
   ASSERT_EQ(Refine("refined").exit_code, 0);
   const MotionHistory a = Motions("whole"), b = Motions("refined");
   double farthest = 0;
-  for (std::size_t f = 0; f < a.frames.size(); ++f) {
-    for (std::size_t i = 0; i < a.frames[f].motions.size(); ++i) {
-      farthest = std::max(farthest, (a.frames[f].motions[i].translation -
-                                     b.frames[f].motions[i].translation)
-                                        .norm());
+  for (int f = 0; f < a.size(); ++f) {
+    const std::vector<NodeMotion> one = a.At(f).motions;
+    const std::vector<NodeMotion> other = b.At(f).motions;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      farthest = std::max(farthest,
+                          (one[i].translation - other[i].translation).norm());
     }
   }
   EXPECT_LT(farthest, 1e-4) << "the run's files hold floats and six decimals";
