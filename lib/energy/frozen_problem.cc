@@ -149,13 +149,13 @@ void VisitCamera(File* file, PinholeCamera* camera) {
 
 template <typename File>
 void VisitLinks(File* file, std::optional<LinksInTime>* links) {
-  if (!file->Has("links", links->has_value())) return;
+  if (!file->Has("known", links->has_value())) return;
   if (!links->has_value()) links->emplace();
   file->Column("known/position", &(*links)->known_positions);
   VisitMotions(file, "known", &(*links)->known_motions);
-  file->Column("links/edges", &(*links)->edges);
-  file->Column("links/triples", &(*links)->triples);
-  file->Column("links/differences", &(*links)->differences);
+  file->Column("hidden_edges/nodes", &(*links)->edges);
+  file->Column("hidden_triples/nodes", &(*links)->triples);
+  file->Column("hidden_triples/factors", &(*links)->differences);
 }
 
 /// Everything but the energy, which is a text, and the edges.
@@ -275,7 +275,7 @@ class Check {
                  std::to_string(known) + " known nodes");
     }
     if (links.triples.size() != links.differences.size()) {
-      file_.Fail("links/differences: expected those of each of " +
+      file_.Fail("hidden_triples/factors: expected those of each of " +
                  std::to_string(links.triples.size()) + " triples");
     }
     const int nodes = problem_.graph.size() + known;
@@ -293,8 +293,8 @@ class Check {
                    std::to_string(nodes) + " nodes, one of them sought");
       }
     };
-    check("links/edges", links.edges);
-    check("links/triples", links.triples);
+    check("hidden_edges/nodes", links.edges);
+    check("hidden_triples/nodes", links.triples);
   }
 
  private:

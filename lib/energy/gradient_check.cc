@@ -139,6 +139,7 @@ std::vector<GradientError> CheckGradients(const SurfaceProblem& problem,
     part.tracks = problem.tracks;
     part.surface = problem.surface;
     part.context = problem.context;
+    part.links = problem.links;
     const auto own = values.begin() + unknowns.first(errors.size());
     part.unknowns.assign(own, own + unknowns.count(errors.size()));
     TermSlopes slopes(part, graph);

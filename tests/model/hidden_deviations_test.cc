@@ -240,7 +240,7 @@ TEST_F(HiddenMotionsAndCeres, WindowsSurviveFreezing) {
   WriteFrozenProblem(folder / "window.h5", *problem);
   ExpectInputError(
       [&] { ReadFrozenProblem(folder / "window.h5", BuiltinTerms()); },
-      "links/edges: expected different ones of");
+      "hidden_edges/nodes: expected different ones of");
 }
 
 TEST_F(HiddenMotionsAndCeres, FindTheSameLeastEnergy) {
