@@ -91,8 +91,10 @@ class MotionHistory {
     int i_;
   };
 
+  /// Of no frame yet.
+  MotionHistory() : MotionHistory(kMemory) {}
   /// `memory`: bytes of motions that lie in memory.
-  explicit MotionHistory(std::size_t memory = kMemory) : memory_(memory) {}
+  explicit MotionHistory(std::size_t memory) : memory_(memory) {}
 
   /// Number of frames.
   int size() const { return static_cast<int>(places_.size()); }
@@ -126,7 +128,7 @@ class MotionHistory {
   void Replace(FrameMotions frame);
 
  private:
-  static constexpr std::size_t kMemory = std::size_t{64} << 20;  // Speed.
+  static constexpr std::size_t kMemory = std::size_t{16} << 20;  // Speed.
 
   /// Where a frame lies.
   struct Place {

@@ -241,7 +241,7 @@ ExportScene ReadExportScene(const std::string& run,
       }
       std::move(shown.begin(), shown.end(), std::back_inserter(scene.surfaces));
     }
-    surface = RecordedSurface();  // Its motions take much memory.
+    surface = {};  // Its motions take much memory.
   }
   return scene;
 }

@@ -1,5 +1,7 @@
 #include "splitfusion/lib/model/hidden_window.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/CholmodSupport>
 #include <Eigen/SVD>
 #include <Eigen/SparseCore>
@@ -129,24 +131,13 @@ class Window {
   /// Rotations for the places of now: of each node the one that fits its edges
   /// best, nearest to the one it had where they leave that open.
   void FindRotations() {
-    for (int f = begin_; f < end_; ++f) {
+    tbb::parallel_for(begin_, end_, [&](int f) {
       for (int i = 0; i < motions_.nodes(); ++i) {
         if (Number(f, i) < 0 || motions_.neighbors[i].empty()) continue;
         Eigen::Matrix3d& rotation = motions_.states[f][i].rotation;
-        Eigen::Matrix3d sum = kStay * rotation.transpose();
-        for (const int j : motions_.neighbors[i]) {
-          sum += (motions_.rest[i] - motions_.rest[j]) *
-                 (Place(f, i) - Place(f, j) - EdgeNoise(f, i, j)).transpose();
-        }
-        const Eigen::JacobiSVD<Eigen::Matrix3d> svd(
-            sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        Eigen::Matrix3d sign = Eigen::Matrix3d::Identity();
-        sign(2, 2) =
-            (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1
-                                                                          : 1;
-        rotation = svd.matrixV() * sign * svd.matrixU().transpose();
+        rotation = FittingRotation(f, i, rotation);
       }
-    }
+    });
   }
 
   /// Of the places and rotations of now.
@@ -223,6 +214,22 @@ class Window {
 
   const Eigen::Vector3d& Place(int frame, int node) const {
     return motions_.states[frame][node].place;
+  }
+
+  /// The one that fits the edges of a node best (Sorkine and Alexa 2007).
+  Eigen::Matrix3d FittingRotation(int f, int i,
+                                  const Eigen::Matrix3d& before) const {
+    Eigen::Matrix3d sum = kStay * before.transpose();
+    for (const int j : motions_.neighbors[i]) {
+      sum += (motions_.rest[i] - motions_.rest[j]) *
+             (Place(f, i) - Place(f, j) - EdgeNoise(f, i, j)).transpose();
+    }
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(
+        sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d sign = Eigen::Matrix3d::Identity();
+    sign(2, 2) =
+        (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1;
+    return svd.matrixV() * sign * svd.matrixU().transpose();
   }
 
   Eigen::Vector3d EdgeNoise(int frame, int i, int j) const {

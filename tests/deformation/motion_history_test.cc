@@ -201,7 +201,7 @@ TEST(Motions, OfNodesThatCannotBeAreRefused) {
 
 TEST(Motions, OfNoFrameAreFine) {
   const TemporaryFolder folder;
-  WriteMotions(folder / "motions.bin", MotionHistory(), 0);
+  WriteMotions(folder / "motions.bin", {}, 0);
   EXPECT_TRUE(ReadMotions(folder / "motions.bin").empty());
 }
 
