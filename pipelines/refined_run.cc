@@ -40,7 +40,8 @@ bool IsWrittenAnew(const std::string& path) {
          first == "checkpoints" || file.filename() == "motions.bin" ||
          file.filename() == "residuals.h5" ||
          file.parent_path().filename() == "warped" ||
-         file.filename().string().find("_hidden_") != std::string::npos;
+         (first == "problems" &&
+          file.filename().string().find("_hidden_") != std::string::npos);
 }
 
 /// The options by the names that they have as flags.
@@ -77,6 +78,26 @@ WarpedOutput WarpedOf(const std::string& root, const RunMarker& marker) {
                      "warped_whole");
   }
   return {std::stoi("0" + every->second.substr(0, 8)), whole->second == "true"};
+}
+
+/// @throw InputError if summary.json has not what SummaryWith() looks at.
+void CheckSummary(const std::string& root) {
+  const std::string path = RunPaths(root).Summary();
+  const Json summary = ReadVersionedOrNull(path);
+  const auto has = [&](const char* key, auto is) {
+    return summary.is_object() && summary.contains(key) && is(summary[key]);
+  };
+  const bool whole =
+      has("frames", [](const Json& v) { return v.is_number(); }) &&
+      has("surfaces", [](const Json& v) {
+        return v.is_array() && std::all_of(v.begin(), v.end(), [](auto& s) {
+                 return s.is_object() && s.contains("id") &&
+                        s["id"].is_number();
+               });
+      });
+  if (!whole) {
+    throw InputError(path + ": expected 'frames' and 'surfaces' of a run");
+  }
 }
 
 /// What was refined, over all surfaces.
@@ -191,6 +212,7 @@ RefinedRun::RefinedRun(std::string root, const HiddenMotionOptions& options,
     if (is_read) CheckRunFile(marker_, root_, path);
   }
   WarpedOf(root_, marker_);
+  CheckSummary(root_);
   run_ = ReadRun(root_);
   for (const RecordedSurface& surface : run_.surfaces) {
     CheckSeen(root_, surface);
@@ -204,6 +226,7 @@ RunIdentity RefinedRun::Identity() const {
   for (const auto& [name, value] : ValuesOf(options_)) {
     identity.parts[name] = value;
   }
+  identity.outputs.erase("freeze_hidden");  // Of the run that was refined.
   if (freeze_ > 0) identity.outputs["freeze_hidden"] = std::to_string(freeze_);
   return identity;
 }

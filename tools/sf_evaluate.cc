@@ -208,7 +208,7 @@ void CheckIsThere() {
   if (!only_begun) return;
   throw InputError(FLAGS_run +
                    ": holds an unfinished run alone (in unfinished): expected "
-                   "one that has ended; the same sf_run command goes on with "
+                   "one that has ended; the same command goes on with "
                    "it");
 }
 

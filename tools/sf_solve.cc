@@ -55,7 +55,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kUsage[] =
-    "Solves problems that sf_run --freeze=N wrote with many solvers:\n"
+    "Solves problems that --freeze=N of sf_run or sf_refine wrote with many\n"
+    "solvers: "
     "times, iterations and costs in DIR/solvers.csv, figures in DIR/*.svg.\n"
     "  sf_solve RUN/problems/*.h5 --output=DIR [--solvers=gn_pcg,ceres:cgnr]\n"
     "           [--starts=warm,cold] [--repeat=N]\n"
@@ -182,7 +183,8 @@ double Deviation(const FrozenProblem& problem) {
 
 std::vector<NamedProblem> ReadProblems(const std::vector<std::string>& files,
                                        const TermRegistry& terms) {
-  CheckOption(!files.empty(), "problems", "none", "files of sf_run --freeze");
+  CheckOption(!files.empty(), "problems", "none",
+              "files of sf_run --freeze or sf_refine --freeze");
   CheckDifferent("problems", files);
   const auto names = NamesOf(files);
   std::vector<NamedProblem> problems;

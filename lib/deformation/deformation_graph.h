@@ -2,6 +2,7 @@
 #define SPLITFUSION_LIB_DEFORMATION_DEFORMATION_GRAPH_H_
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -57,6 +58,11 @@ struct DeformationGraph {
   /// Whether one motion carries the whole surface.
   bool rigid() const { return positions.size() == 1; }
 
+  /// Index of the node behind the last one of part k; of a graph without parts,
+  /// which is one, behind all.
+  int EndOfPart(std::size_t k) const {
+    return k + 1 < parts.size() ? parts[k + 1].node : size();
+  }
   /// Whether a node is in use in a frame.
   bool IsInUse(int node, int frame) const;
 

@@ -64,6 +64,7 @@ void MotionHistory::Append(FrameMotions frame) {
 }
 
 void MotionHistory::Replace(FrameMotions frame) {
+  assert(Has(frame.frame));
   Place& place = places_[IndexOf(frame.frame)];
   if (place.memory != nullptr) used_ -= place.memory->bytes();
   Put(std::move(frame), &place);
@@ -72,6 +73,7 @@ void MotionHistory::Replace(FrameMotions frame) {
 /// Copies of this share the file: what lies there stays as it is.
 void MotionHistory::Put(FrameMotions frame, Place* place) {
   place->frame = frame.frame;
+  place->tracked = frame.tracked;
   if (used_ + frame.bytes() > memory_) {
     place->memory = nullptr;
     place->spooled = spooled_.size();
@@ -81,15 +83,6 @@ void MotionHistory::Put(FrameMotions frame, Place* place) {
   used_ += frame.bytes();
   place->memory = std::make_shared<const FrameMotions>(std::move(frame));
 }
-
-namespace {
-
-/// Index of the node behind the last one of part k.
-int EndOfPart(const DeformationGraph& graph, std::size_t k) {
-  return k + 1 < graph.parts.size() ? graph.parts[k + 1].node : graph.size();
-}
-
-}  // namespace
 
 PartEnds EndsOfParts(const MotionHistory& history,
                      const DeformationGraph& graph) {
@@ -110,7 +103,7 @@ PartEnds EndsOfParts(const MotionHistory& history,
     const int node = graph.parts[k].node;
     const int from = frame ? frame->IndexOf(node) : -1;
     if (from < 0) continue;
-    std::copy_n(frame->motions.begin() + from, EndOfPart(graph, k) - node,
+    std::copy_n(frame->motions.begin() + from, graph.EndOfPart(k) - node,
                 motions->begin() + node);
   }
   return ends;
@@ -124,8 +117,8 @@ std::vector<NodeMotion> MotionsOfAll(const MotionHistory& history,
     const ModelPart& part = graph.parts[k];
     const std::vector<NodeMotion>& nearest =
         frame < part.first_frame ? ends.first : ends.last;
-    std::copy(nearest.begin() + part.node,
-              nearest.begin() + EndOfPart(graph, k), all.begin() + part.node);
+    std::copy(nearest.begin() + part.node, nearest.begin() + graph.EndOfPart(k),
+              all.begin() + part.node);
   }
   history.Find(frame)->SpreadTo(&all);
   return all;

@@ -109,6 +109,11 @@ class MotionHistory {
   FrameMotions At(int i) const;
   /// Whether there is a frame with this index.
   bool Has(int frame) const { return IndexOf(frame) >= 0; }
+  /// Whether there is one in which the surface was tracked.
+  bool Tracked(int frame) const {
+    const int i = IndexOf(frame);
+    return i >= 0 && places_[i].tracked;
+  }
   /// Motions of the frame with this index; none if the surface has none for it.
   ///
   /// @throw InputError as At().
@@ -133,6 +138,7 @@ class MotionHistory {
   /// Where a frame lies.
   struct Place {
     int frame = 0;                               ///< Index.
+    bool tracked = true;                         ///< As FrameMotions::tracked.
     std::shared_ptr<const FrameMotions> memory;  ///< Null: in the file.
     int spooled = 0;                             ///< Index there.
   };

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <optional>
 #include <utility>
 
 #include "splitfusion/lib/visibility/seen_triangles.h"
@@ -23,8 +22,7 @@ bool AnimatedSurface::HasMotions(int frame) const {
 }
 
 bool AnimatedSurface::Tracked(int frame) const {
-  const std::optional<FrameMotions> motions = surface_.motions.Find(frame);
-  return motions && motions->tracked;
+  return surface_.motions.Tracked(frame);
 }
 
 int AnimatedSurface::FirstFrame() const {

@@ -58,10 +58,8 @@ std::vector<PartOfSurface> PartsOf(const DeformationGraph& graph) {
   std::vector<PartOfSurface> parts;
   for (std::size_t i = 0; i < graph.parts.size(); ++i) {
     const ModelPart& part = graph.parts[i];
-    const int end =
-        i + 1 < graph.parts.size() ? graph.parts[i + 1].node : graph.size();
-    parts.push_back(
-        {part.node, end, part.first_frame, part.end_frame, refuted[i] != 0});
+    parts.push_back({part.node, graph.EndOfPart(i), part.first_frame,
+                     part.end_frame, refuted[i] != 0});
   }
   return parts;
 }

@@ -11,12 +11,6 @@ ModelPart PartAt(const DeformationGraph& graph, std::size_t index) {
   return graph.parts.empty() ? ModelPart() : graph.parts[index];
 }
 
-/// Index of the node behind the last one of a part.
-int EndNode(const DeformationGraph& graph, std::size_t index) {
-  return index + 1 < graph.parts.size() ? graph.parts[index + 1].node
-                                        : graph.size();
-}
-
 /// A part with all that was not seen for hidden.
 PartMotions SightsOf(const SurfaceModel& model, std::size_t index,
                      const std::vector<Eigen::Vector3d>& centers) {
@@ -25,7 +19,7 @@ PartMotions SightsOf(const SurfaceModel& model, std::size_t index,
   PartMotions motions;
   motions.part = static_cast<int>(index);
   motions.first_node = part.node;
-  const int end = EndNode(graph, index);
+  const int end = graph.EndOfPart(index);
   for (int i = part.node; i < end; ++i) {
     motions.rest.push_back(centers[i]);
     motions.neighbors.push_back(graph.neighbors[i]);
@@ -171,8 +165,8 @@ void PartFrames::Spread(int f, std::vector<PartMotions::State>* states) const {
 }
 
 void PartFrames::Load(int begin, int end, PartMotions* motions) const {
-  for (int f = begin - 1; f >= 0 && !motions->states[f].empty(); --f) {
-    motions->states[f] = {};
+  for (int& f = motions->first_in_hand; f < begin; ++f) {
+    motions->states[f] = std::vector<PartMotions::State>();
   }
   for (int f = begin; f < end; ++f) {
     if (!motions->states[f].empty()) continue;

@@ -38,6 +38,7 @@ struct PartMotions {
   std::vector<std::vector<char>> hidden;
   /// By frame, then node; of a frame that is not in hand, none.
   std::vector<std::vector<State>> states;
+  int first_in_hand = 0;  ///< No frame before this one is.
 };
 
 /// Where the centres of nodes are, canonical, metres: that of a rigid surface

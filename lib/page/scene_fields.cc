@@ -60,8 +60,9 @@ void AddDeviations(const TriangleMesh& mesh, const std::vector<double>& sigma,
 
 NodeField Uncertainty(const RunPaths& paths, const RecordedSurface& surface) {
   NodeField field{"sigma", "uncertainty", 0.02, true, {}, {}};
-  for (const FrameMotions& motions : surface.motions) {
-    const std::string path = paths.Uncertainty(motions.frame, surface.id);
+  for (int i = 0; i < surface.motions.size(); ++i) {
+    const std::string path =
+        paths.Uncertainty(surface.motions.frame(i), surface.id);
     if (!std::filesystem::exists(path)) continue;
     PlyProperties extra;
     const TriangleMesh mesh = ReadPly(path, &extra);
@@ -69,7 +70,7 @@ NodeField Uncertainty(const RunPaths& paths, const RecordedSurface& surface) {
     if (mesh.vertices.empty() || sigma.size() != mesh.vertices.size()) {
       throw InputError(path + ": expected vertices with a property 'sigma'");
     }
-    AddDeviations(mesh, sigma, surface, motions, &field);
+    AddDeviations(mesh, sigma, surface, surface.motions.At(i), &field);
   }
   return field;
 }

@@ -24,6 +24,18 @@ TEST(ContentHash, DependsOnAllBytesAndNotOnThePieces) {
   EXPECT_NE(whole.Hex(), other.Hex());
 }
 
+TEST(RunningChecksum64, IsThatOfAllBytes) {
+  std::string bytes(3000, 'x');
+  bytes[1234] = 'y';
+  RunningChecksum64 running;
+  EXPECT_EQ(running.Value(), Checksum64(nullptr, 0));
+  running.Add(bytes.data(), 1);
+  running.Add(bytes.data() + 1, 1999);
+  running.Add(bytes.data() + 2000, 1000);
+  EXPECT_EQ(running.Value(), Checksum64(bytes.data(), bytes.size()));
+  EXPECT_NE(running.Value(), Checksum64(bytes.data(), bytes.size() - 1));
+}
+
 TEST(ContentHash, TextsAreToldApartByWhereTheyEnd) {
   ContentHash a, b;
   a.Add(std::string("ab")).Add(std::string("c"));

@@ -9,6 +9,8 @@
 #include <map>
 #include <vector>
 
+#include "splitfusion/lib/model/hidden_window.h"
+#include "splitfusion/lib/model/part_motions.h"
 #include "support/expect_input_error.h"
 #include "support/hidden_plate.h"
 #include "support/motion_frames.h"
@@ -280,6 +282,30 @@ TEST(HiddenMotions, ShortWindowsAgreeWithLongOnes) {
   EXPECT_GT(windows.size(), 1u);
   EXPECT_LT(FarthestNode(model, other), 2e-3);
   EXPECT_LT(FarthestNode(other, truth), 5e-3);
+}
+
+TEST(PartFrames, HoldsThoseInHandAlone) {
+  const auto poses = Poses(FramesUpTo(600));
+  SurfaceModel model = SeenPlate(poses, Walk);
+  // Some windows have nothing hidden, and are passed over.
+  for (int f = 10; f < 590; f += 100) Hide(f, f + 3, All, &model);
+  const std::vector<Eigen::Vector3d> centers = CentersOf(model);
+  const PartFrames frames(0, centers, poses, model);
+  PartMotions motions = frames.motions();
+  int windows = 0;
+  WindowHooks hooks;
+  hooks.begins = [&](int begin, int end) {
+    frames.Load(begin, end, &motions);
+    int in_hand = 0;
+    for (const auto& states : motions.states) {
+      EXPECT_EQ(states.empty(), states.capacity() == 0);
+      in_hand += !states.empty();
+    }
+    EXPECT_EQ(in_hand, end - begin);
+    ++windows;
+  };
+  RefinePart({}, {}, &motions, hooks);
+  EXPECT_GT(windows, 5);
 }
 
 TEST(HiddenMotions, DoNotDependOnWhereTheFramesLie) {

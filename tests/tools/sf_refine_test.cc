@@ -153,16 +153,17 @@ TEST_F(SfRefine, FreezesItsWindowsForOtherSolvers) {
   ASSERT_EQ(solved.exit_code, 0) << solved.errors;
   EXPECT_THAT(solved.output, HasSubstr("gn_cholesky: 1 converged"));
   EXPECT_THAT(solved.output, HasSubstr("ceres: 1 converged"));
-  // They are of that refinement alone.
-  ASSERT_EQ(RunProgram("sf_refine", (folder_ / "refined") +
-                                        " --output=" + (folder_ / "again"))
-                .exit_code,
-            0);
+  // They are of that refinement alone; all else goes with the run.
+  const std::string again = (folder_ / "refined") +
+                            " --output=" + (folder_ / "again") + " --overwrite";
+  ASSERT_EQ(RunProgram("sf_refine", again + " --freeze=1").exit_code, 0);
+  EXPECT_TRUE(folder_.Has("again/problems/000000_001_hidden_0.h5"));
+  ASSERT_EQ(RunProgram("sf_refine", again).exit_code, 0);
   EXPECT_FALSE(folder_.Has("again/problems/000000_001_hidden_0.h5"));
-  ExpectRefused("sf_refine",
-                (folder_ / "run") + " --freeze=-1 --output=" +
-                    (folder_ / "other"),
-                "freeze = -1: expected >= 0");
+  ExpectRefused(
+      "sf_refine",
+      (folder_ / "run") + " --freeze=-1 --output=" + (folder_ / "other"),
+      "freeze = -1: expected >= 0");
 }
 
 TEST_F(SfRefine, IsWhatTheRunItselfWouldHaveDone) {
