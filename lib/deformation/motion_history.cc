@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "splitfusion/lib/base/spooled_list.h"
+
 namespace splitfusion {
 
 int FrameMotions::IndexOf(int node) const {
@@ -35,6 +37,10 @@ void FrameMotions::SpreadTo(std::vector<NodeMotion>* all) const {
   }
 }
 
+MotionHistory::MotionHistory(std::size_t memory)
+    : memory_(memory),
+      spooled_(std::make_shared<SpooledList<FrameMotions>>()) {}
+
 /// That of a frame; -1: there is none.
 int MotionHistory::IndexOf(int frame) const {
   const auto found = std::lower_bound(
@@ -47,7 +53,7 @@ int MotionHistory::IndexOf(int frame) const {
 
 FrameMotions MotionHistory::At(int i) const {
   const Place& place = places_[i];
-  return place.memory != nullptr ? *place.memory : spooled_.At(place.spooled);
+  return place.memory != nullptr ? *place.memory : spooled_->At(place.spooled);
 }
 
 std::optional<FrameMotions> MotionHistory::Find(int frame) const {
@@ -70,14 +76,14 @@ void MotionHistory::Replace(FrameMotions frame) {
   Put(std::move(frame), &place);
 }
 
-/// Copies of this share the file: what lies there stays as it is.
+/// Copies of this share the list: what lies there stays as it is.
 void MotionHistory::Put(FrameMotions frame, Place* place) {
   place->frame = frame.frame;
   place->tracked = frame.tracked;
   if (used_ + frame.bytes() > memory_) {
     place->memory = nullptr;
-    place->spooled = spooled_.size();
-    spooled_.Add(frame);
+    place->spooled = spooled_->size();
+    spooled_->Add(frame);
     return;
   }
   used_ += frame.bytes();

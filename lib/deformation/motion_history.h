@@ -6,10 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "splitfusion/lib/base/spooled_list.h"
 #include "splitfusion/lib/deformation/deformation_graph.h"
 
 namespace splitfusion {
+
+template <typename T>
+class SpooledList;
 
 /// Nodes that follow one another.
 struct NodeRange {
@@ -94,7 +96,7 @@ class MotionHistory {
   /// Of no frame yet.
   MotionHistory() : MotionHistory(kMemory) {}
   /// `memory`: bytes of motions that lie in memory.
-  explicit MotionHistory(std::size_t memory) : memory_(memory) {}
+  explicit MotionHistory(std::size_t memory);
 
   /// Number of frames.
   int size() const { return static_cast<int>(places_.size()); }
@@ -149,7 +151,7 @@ class MotionHistory {
   std::size_t memory_;
   std::size_t used_ = 0;  // Bytes of it.
   std::vector<Place> places_;
-  SpooledList<FrameMotions> spooled_;
+  std::shared_ptr<SpooledList<FrameMotions>> spooled_;  // Of copies, too.
 };
 
 /// Motions of the nodes of a graph at the ends of the parts that they are of,

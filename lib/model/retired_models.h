@@ -8,9 +8,23 @@
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_log.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
-#include "splitfusion/lib/model/surface_model.h"
 
 namespace splitfusion {
+
+/// What there is of a surface, or of a part of one, while it is tracked.
+struct TrackedModel {
+  TriangleMesh mesh;       ///< Canonical frame, metres.
+  DeformationGraph graph;  ///< Its motions are the last ones.
+  MotionLog history;       ///< Motions of all its frames, one at least.
+
+  /// Saves or restores it, but for the motions in the file of a complete log,
+  /// see MotionLog::SerializeIndex().
+  template <typename Archive>
+  void Serialize(Archive* archive) {
+    (*archive)(mesh, graph);
+    history.SerializeIndex(archive);
+  }
+};
 
 /// Models of a surface, and parts of them, that are used no more, in the order
 /// in which they ended. Nothing asks for them before the end: all of them lies

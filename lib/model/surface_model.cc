@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "splitfusion/lib/model/retired_models.h"
+
 namespace splitfusion {
 namespace {
 

@@ -6,31 +6,17 @@
 
 #include "splitfusion/lib/deformation/deformation_graph.h"
 #include "splitfusion/lib/deformation/motion_history.h"
-#include "splitfusion/lib/deformation/motion_log.h"
 #include "splitfusion/lib/geometry/triangle_mesh.h"
 
 namespace splitfusion {
+
+struct TrackedModel;
 
 /// What is kept of a surface: its shape, and how it moved.
 struct SurfaceModel {
   TriangleMesh mesh;       ///< Canonical frame, metres.
   DeformationGraph graph;  ///< Its motions are the last ones.
   MotionHistory history;   ///< Motions of all its frames.
-};
-
-/// What there is of a surface, or of a part of one, while it is tracked.
-struct TrackedModel {
-  TriangleMesh mesh;       ///< Canonical frame, metres.
-  DeformationGraph graph;  ///< Its motions are the last ones.
-  MotionLog history;       ///< Motions of all its frames, one at least.
-
-  /// Saves or restores it, but for the motions in the file of a complete log,
-  /// see MotionLog::SerializeIndex().
-  template <typename Archive>
-  void Serialize(Archive* archive) {
-    (*archive)(mesh, graph);
-    history.SerializeIndex(archive);
-  }
 };
 
 /// What is kept of every surface, by id.

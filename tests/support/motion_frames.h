@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "splitfusion/lib/deformation/motion_history.h"
+#include "splitfusion/lib/model/retired_models.h"
 #include "splitfusion/lib/model/surface_model.h"
 
 namespace splitfusion {
